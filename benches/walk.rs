@@ -2,7 +2,7 @@
 //!
 //! Throughput counts particle-steps (attempted moves) for `step`, inserted particles for `insert`, blocked
 //! constrictions for `merge`, and constrictions for `network`. Goals on one core, against the plain walk timed in
-//! the same hour (`scripts/peers/compare_walk.sh`): 15 times with AVX-512, 5 times portable.
+//! the same hour (`scripts/peers/compare_walk.py`): 15 times with AVX-512, 5 times portable.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};

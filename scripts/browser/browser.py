@@ -2,10 +2,23 @@
 
 import json
 import os
+import shutil
 import subprocess
+import sys
 
 FLAGS = """--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking
 --disable-component-update --disable-sync --disable-dev-shm-usage --hide-scrollbars --remote-debugging-pipe""".split()
+
+
+def need(*commands):
+    """Installs Debian's packages for the commands that are missing."""
+    packages = {"chromium": "chromium fonts-liberation", "pdftotext": "poppler-utils"}
+    missing = " ".join(packages[command] for command in commands if not shutil.which(command))
+    if missing and os.geteuid() != 0:
+        sys.exit(f"needs: {missing} (as root this script installs them)")
+    if missing:
+        install = f"(apt-get update -qq && apt-get install -y -qq --no-install-recommends {missing}) >&2"
+        subprocess.run(install, shell=True, check=True, env={**os.environ, "DEBIAN_FRONTEND": "noninteractive"})
 
 
 class Browser:

@@ -1,4 +1,11 @@
-"""Draws figures/*.svg as PNGs, for figures_to_png.sh. Python's standard library only."""
+#!/usr/bin/env python3
+"""Draws every figure of a results folder as a PNG beside its SVG, for programs that take no SVG.
+
+    scripts/browser/figures_to_png.py FOLDER [WIDTH]
+
+WIDTH is that of the pictures in pixels, 1440 unless given. Needs a Chromium (as root on Debian it installs one);
+`inkscape --export-type=png figures/*.svg` and `rsvg-convert` do the same where they are.
+"""
 
 import base64
 import os
@@ -7,14 +14,17 @@ import re
 import sys
 import tempfile
 
-from browser import Browser
+from browser import Browser, need
 
 
 def main():
-    folder, width = pathlib.Path(sys.argv[1]), int(sys.argv[2])
+    if len(sys.argv) not in (2, 3) or not re.fullmatch("[1-9][0-9]{0,4}", (sys.argv + ["1440"])[2]):
+        sys.exit(__doc__)
+    folder, width = pathlib.Path(sys.argv[1]), int((sys.argv + ["1440"])[2])
     drawings = sorted((folder / "figures").glob("*.svg"))
     if not drawings:
-        raise SystemExit(f"{folder / 'figures'}: no SVG file")
+        raise SystemExit(f"{folder}: holds no figures; name the folder of a finished run, packing or campaign")
+    need("chromium")
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile, Browser(profile) as browser:
         tab = browser.open("about:blank", 100, 100)
         for drawing in drawings:

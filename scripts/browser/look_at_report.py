@@ -1,4 +1,16 @@
-"""Drives Chromium for look_at_report.sh. Python's standard library only."""
+#!/usr/bin/env python3
+"""Opens a report in a headless Chromium, as a person would, and takes a picture of the whole page, or prints it.
+
+    scripts/browser/look_at_report.py REPORT.html OUT.png [WIDTH [dark]]
+    scripts/browser/look_at_report.py REPORT.html OUT.pdf [a4|letter]
+
+WIDTH is that of the window in pixels, 1280 unless given (390 is a telephone); dark sets the screen to dark colours. Fails when the page
+breaks its content security policy, logs an error, asks for any other file, is wider than the window, holds two labels that overlap in a
+figure or one that is cut off, when a box of a figure does not hide its curve or enlarge it, or when the picture is blank; in print, when
+the first page lacks verdict, warnings, rules or the places to sign, when Figure 1 is lettered below 7 pt, when a page has no number, when
+a page but the last is mostly empty, or when a word lies on itself. Installs Debian's chromium, and for print poppler-utils, when they are
+missing.
+"""
 
 import base64
 import html
@@ -10,7 +22,7 @@ import sys
 import tempfile
 import zlib
 
-from browser import Browser
+from browser import Browser, need
 
 # What a person would trip over; runs in the finished page.
 INSPECT = """(() => {
@@ -209,9 +221,13 @@ def complaints(event, wanted):
 
 
 def main():
-    page, out, how = sys.argv[1], sys.argv[2], sys.argv[3]
-    dark = sys.argv[4:] == ["dark"]
+    if len(sys.argv) not in (3, 4, 5) or not pathlib.Path(sys.argv[1]).is_file():
+        sys.exit(__doc__)
+    page, out = sys.argv[1:3]
     is_print = out.endswith(".pdf")
+    how = (sys.argv + ["a4" if is_print else "1280"])[3]
+    dark = sys.argv[4:] == ["dark"]
+    need("chromium", *["pdftotext"] * is_print)
     faults = print_out(page, out, how) if is_print else look(page, out, int(how), dark)
     for fault in faults:
         print(f"{page}: {fault}", file=sys.stderr)

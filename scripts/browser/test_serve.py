@@ -1,4 +1,11 @@
-"""Drives Chromium for test_serve.sh. Python's standard library only."""
+#!/usr/bin/env python3
+"""Uses the page of `voidwalk serve` in a headless Chromium, as a person would: pastes and drops sheets, gives wrong input, judges, stops,
+loads the page again, continues, compares; and takes a picture of every state into target/serve/.
+
+    [PATIENCE=5] scripts/browser/test_serve.py [BINARY]      target/release/voidwalk unless given; every wait PATIENCE times as long
+
+Fails where a state is not reached, where the page logs an error, breaks its content security policy or is wider than its window.
+"""
 
 import base64
 import json
@@ -10,7 +17,7 @@ import sys
 import tempfile
 import time
 
-from browser import Browser
+from browser import Browser, need
 
 BASE = "size_mm,percent\n0.08,0\n0.15,40\n0.2,70\n0.3,100\n"
 FINE = "size_mm,percent\n0.5,0\n0.7,30\n1.0,70\n1.5,100\n"
@@ -335,4 +342,5 @@ def look(browser, url, pictures, workbook, root, process, binary):
 
 if __name__ == "__main__":
     os.chdir(pathlib.Path(__file__).resolve().parents[2])
-    main(*sys.argv[1:])
+    need("chromium")
+    main((sys.argv + ["target/release/voidwalk"])[1], "target/serve")

@@ -258,14 +258,14 @@ def settings(sets):
 class Program:
     """The program, and how each kind of scene is worked in a folder that holds the input files; gives what is compared by file."""
 
-    def __init__(self, binary, threads, isa):
-        self.binary, self.threads, self.isa = binary, str(threads), isa
+    def __init__(self, binary, isa):
+        self.binary, self.isa = binary, isa
 
     def start(self, folder, words, threads=None, isa=None):
         isa = isa or self.isa
         environment = {k: v for k, v in os.environ.items() if k != "VOIDWALK_ISA"} | ({"VOIDWALK_ISA": isa} if isa else {})
         if words[0] != "constrictions":
-            words = [*words, "--threads", str(threads or self.threads)]
+            words = [*words, "--threads", str(threads or 1)]
         return subprocess.Popen(
             [self.binary, *words], cwd=folder, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
@@ -461,13 +461,12 @@ def write(file, found, commit):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--binary", required=True, type=pathlib.Path, help="the program itself: it is killed")
-    parser.add_argument("--threads", type=int, default=1, help="of scenes that do not set them; they change no bit")
     parser.add_argument("--isa", choices=["avx512", "avx2", "portable"], help="instructions of scenes that do not set them; they change no bit")
     parser.add_argument("--keep", type=pathlib.Path, help="a new folder, in which the results stay")
     parser.add_argument("what", choices=["record", "check"])
     parser.add_argument("file", type=pathlib.Path)
     options = parser.parse_args()
-    program = Program(options.binary.resolve(), options.threads, options.isa)
+    program = Program(options.binary.resolve(), options.isa)
     known = json.loads(options.file.read_text())["scenes"] if options.what == "check" else None
     with tempfile.TemporaryDirectory() as temporary:
         folder = options.keep or pathlib.Path(temporary)

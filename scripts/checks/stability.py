@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Extreme scenes and lattices of grains: what must happen, what happened, and the time that it took.
+"""Stiff or extreme scenes and packings, and lattices of grains: what must happen, what happened, and the time that it took.
 
     scripts/checks/stability.py [--binary target/release/voidwalk]
 
@@ -176,6 +176,34 @@ def _(folder):
         said.append(f"{name}: {'walked' if done.returncode == 0 else 'refused: ' + done.stderr.strip().split(': ', 1)[-1][:120]}")
         assert done.returncode == 0 or name == "vertical step", said[-1]
     return "; ".join(said)
+
+
+def pack(folder, name, gradation, *sets):
+    """The void ratio of a packing without friction, or of one that cannot be why not."""
+    write(within(folder, name), "filter.toml", f"[filter]\n{gradation}\nfriction = 0.0\n")
+    done = called(folder / name, "pack", "filter.toml", "--json", sets=sets)
+    record = json.loads(done.stdout) if done.returncode == 0 else {}
+    return (record["after"] or record["before"])["void_ratio"] if record else done.stderr.strip()
+
+
+@case("Packing", "stiffness over six decades, Cu 1.5, 600 grains, friction 0 (ratio 1 is the paper's 27 GPa)",
+      "settles, and the void ratio moves little down to the default; refused where overlaps mean nothing")
+def _(folder):
+    found = {}
+    for ratio in ["1", "0.1", "0.01", "0.001", "0.0001", "0.00001", "0.000001"]:
+        found[ratio] = pack(folder, ratio, "d0_mm = 1\ncu = 1.5", "packing.grains=600", f"packing.stiffness_ratio={ratio}")
+        assert isinstance(found[ratio], float) or "would overlap" in found[ratio], found[ratio]
+    assert abs(found["1"] - found["0.1"]) < 0.01, found
+    return "; ".join(f"{ratio}: " + (f"e {e:.4f}" if isinstance(e, float) else "refused") for ratio, e in found.items())
+
+
+@case("Packing", "a whole packing with size ratio 100", "settles, or says why not; neighbour search and triangulation hold")
+def _(folder):
+    # A gap: a thousandth of the mass is a hundred times finer, about a thousand fines a coarse grain.
+    write(folder, "gap.csv", "opening_mm,percent_finer\n0.1,0\n0.11,0.1\n9,0.1\n9.5,50\n10,100\n")
+    said = pack(folder, "gap", 'sieve = "../gap.csv"', "packing.grains=12000", "packing.max_steps=60000")
+    assert isinstance(said, float) or "not settled" in said or "no constriction" in said, said
+    return f"e {said:.4f}" if isinstance(said, float) else said[:200]
 
 
 @case("Triangulation", "simple cubic, FCC, HCP, BCC: exact, scaled by 1e-6 and 1e6, jittered by 1e-16, 1e-12, 1e-6",

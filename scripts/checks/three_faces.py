@@ -5,11 +5,13 @@
 
 Each pair is written as two sheets and given to `voidwalk rules`, to `serve` and to `voidwalk.rules`, some said to be dispersive, some
 beside an open joint, some exchanged, some as given. Compared are every rule with its value and limit, D85B with the size that it was
-regraded on, the order of the rules (of the page the sizes of the base and the rules that are not met), or the words of the refusal. Exit
-code 1 where any two differ. The environment of --python has the package.
+regraded on, the order of the rules (of the page the sizes of the base and the rules that are not met), or the words of the refusal.
+`voidwalk judge` must refuse what `rules` refuses, and its outcome has the same rules. Exit code 1 where any two differ. The environment
+of --python has the package.
 """
 
 import json
+import os
 import pathlib
 import random
 import re
@@ -26,6 +28,9 @@ import common  # noqa: E402
 # A server keeps at most 200 sheets.
 PAIRS_A_SERVER = 95
 SIEVES = [75, 37.5, 19, 9.5, 4.75, 2.36, 1.18, 0.6, 0.3, 0.15, 0.075, 0.02, 0.005, 0.002]
+# A lattice of four voids across may have loops whose way out is very narrow: after so many seconds its walk is left alone.
+PATIENCE = 20
+SMALL = ["replicates=1", *(f"network.n{axis}=4" for axis in "xyz"), "base.n_base=50", "record.sensitivity=[]", "filter.grains_per_void=0.6"]
 # A second rule of drainage, which the page leaves out where both ask for the same; of it nothing is compared.
 LEAST = "Permeability, the least by EM 1110-2-1901"
 # One limit of a dispersive base, which the page names once.
@@ -94,13 +99,34 @@ def refusal(words):
     return {"refused": " ".join(re.sub(r",? or say that they are as given.*$", "", words).split())}
 
 
-def by_command(binary, folder, at, flags):
-    words = [binary, "rules", f"base-{at}.csv", f"filter-{at}.csv", "--json"]
+def called(binary, folder, at, flags, command, *more):
+    words = [binary, command, f"base-{at}.csv", f"filter-{at}.csv", *more]
     words += ["--dispersive"] * flags["dispersive"] + ["--as-given"] * flags["as_given"]
     words += ["--joint-mm", str(flags["joint_mm"])] if "joint_mm" in flags else []
-    done = subprocess.run(words, cwd=folder, capture_output=True, text=True)
+    before = os.listdir(folder)
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=PATIENCE)
     assert done.returncode in (0, 2), f"{words}: exit code {done.returncode}\n{done.stderr}"
+    assert done.returncode == 0 or os.listdir(folder) == before, f"{words}: refused and left something"
+    return done
+
+
+def by_command(*pair):
+    done = called(*pair, "rules", "--json")
     return told(json.loads(done.stdout)) if done.returncode == 0 else refusal(done.stderr)
+
+
+def judged_otherwise(binary, folder, at, flags, first):
+    """What `judge` says otherwise than `rules`. It may refuse more: a base of one size has rules and no walk."""
+    try:
+        done = called(binary, folder, at, flags, "judge", "--quick", "-q", "--out", f"out-{at}", *common.sets(SMALL))
+    except subprocess.TimeoutExpired:
+        return []
+    if done.returncode == 2 or "refused" in first:
+        return ["rules refuse, judge walks"] * (done.returncode == 0)
+    outcome = json.loads((folder / f"out-{at}" / "outcome.json").read_text())
+    of_rules, of_judge = ({rule["id"]: [rule[key] for key in ("value", "limit", "met")] for rule in rules if rule["role"] != "walk"}
+                          for rules in (first["rules"], outcome["rules"]))
+    return [f"{rule}: {said}, of judge {of_judge.get(rule)}" for rule, said in of_rules.items() if of_judge.get(rule) != said]
 
 
 class Server:
@@ -168,10 +194,11 @@ def main():
             print(json.dumps([f"base-{at}.csv", f"filter-{at}.csv", flags]), file=python.stdin, flush=True)
             got = json.loads(python.stdout.readline())
             got = refusal(got["refused"]) if "refused" in got else told(got)
-            is_same = got == first and page == (first if "refused" in first else as_shown(first))
+            otherwise = judged_otherwise(binary, folder, at, flags, first)
+            is_same = got == first and page == (first if "refused" in first else as_shown(first)) and not otherwise
             counted["different" if not is_same else "the same refusal" if "refused" in first else "the same rules"] += 1
             if not is_same:
-                print(f"pair {at} {flags} base {base} filter {filter_}")
+                print(f"pair {at} {flags} base {base} filter {filter_}", *otherwise, sep="\n  ")
                 for face, said in (("command line", first), ("serve", page), ("Python", got)):
                     print(f"  {face}: {json.dumps(as_shown(said) if 'rules' in said else said)[:900]}")
         server.stop()

@@ -33,7 +33,19 @@ VARIANTS = {
         "cu1.5-loose": 0.433, "cu1.5-dense": 0.343, "cu3-loose": 0.465,
     }, None, []),
     "paper-published-2.5": ("paper-published", "published constriction curves, 2.5 grains per void", GRAINS, {}, None, []),
+    # Fig. 20 and Table 3: voids with four to eight connections.
+    "table3": ("paper", "loose filter with Cu 1.5, voids connected as in Table 3", ['network.connectivity = "table3"'], {}, None, []),
+    # What the overlap rule does: the grains of cu1.5-loose, packed again, with voids merged at the number that the paper gives, in place
+    # of the one fitted to its Table 2.
+    "overlap-0.5": ("paper", "loose filter with Cu 1.5, voids merged at an overlap of 0.5", [], {}, None, []),
 }
+#: What the only filter of a variant sets.
+ALONE = {
+    "table3": '"filter.curve" = "cu1.5-loose", "base.dc_curve" = "cu1.5-loose"',
+    "overlap-0.5": '"filter.cu" = 1.5, "filter.friction" = 0.3, "packing.grains" = 9313, "packing.merge_overlap" = 0.5',
+}
+#: The case of Table 3 with the grains per void of paper-2.5 and of paper-inverse.
+CASES = {"table3": {"table3-2.5": 2.5, "table3-inverse": 2.31}}
 
 
 def plan(name):
@@ -47,6 +59,11 @@ def plan(name):
         text = text.replace(f'"{filter}" = {{ ', f'"{filter}" = {{ "filter.grains_per_void" = {number}, ')
     if bases:
         text = text.replace("values = [1.5, 3, 4.5]", f"values = [{bases}]")
+    if name in ALONE:
+        text = re.sub(r'(?s)"cu1.5-loose" = .*?\n\n', f'"cu1.5-loose" = {{ {ALONE[name]} }}\n\n', text).split("\n[[leave_out]]")[0]
+    for case, number in CASES.get(name, {}).items():
+        sets = f'"filter.curve" = "cu1.5-loose", "filter.grains_per_void" = {number}, "base.cu" = 1.5, "base.d85_at_dc" = 5'
+        text += f'\n[[case]]\nname = "{case}"\nset = {{ {sets} }}\n'
     return text + "".join(f"\n[[leave_out]]\n{combination}\n" for combination in left_out)
 
 

@@ -1,6 +1,9 @@
-"""Times the plain walks and the library's in turns and prints tables in Markdown.
+#!/usr/bin/env python3
+"""Builds and times the plain walks of benches/baseline beside the library's, in turns, and prints the ratios in Markdown.
 
-Called by compare_walk.sh: BUILD BINARY SCALE_BINARY N...
+    scripts/peers/compare_walk.py [N ...]     2000000 20000000 unless given; 200000000 takes half an hour
+
+Whole runs of engine counts are always among them. NumPy and Numba are installed into target/venv-compare.
 """
 
 import datetime
@@ -8,6 +11,10 @@ import os
 import statistics
 import subprocess
 import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "studies"))
+import common  # noqa: E402
 
 CURVE = "src/core/data/filters/shire2016-cu1.5-loose.csv"
 PYTHON = "target/venv-compare/bin/python"
@@ -115,8 +122,21 @@ def counts(build, scale):
     return lines
 
 
+def build_plain(build):
+    os.makedirs(build, exist_ok=True)
+    subprocess.run(["g++", "-O3", "-march=native", "-o", f"{build}/walk_cpp", "benches/baseline/walk.cpp"], check=True)
+    rustc = ["rustc", "--edition", "2024", "-C", "opt-level=3", "-C", "target-cpu=native"]
+    subprocess.run([*rustc, "-o", f"{build}/walk_rust", "benches/baseline/walk.rs"], check=True)
+    if not os.path.exists(PYTHON):
+        subprocess.run(["python3", "-m", "venv", "target/venv-compare"], check=True)
+        subprocess.run([PYTHON, "-m", "pip", "install", "--quiet", "numpy", "numba"], check=True)
+
+
 def main():
-    build, binary, scale, *sizes = sys.argv[1:]
+    os.chdir(common.ROOT)
+    build, binary, scale = "target/compare", common.bench("compare_walk"), common.bench("scale_walk")
+    sizes = sys.argv[1:] or ["2000000", "20000000"]
+    build_plain(build)
     version = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
     print(f"{datetime.date.today()}, commit {version}, {os.cpu_count()} processors, seed {SEED}, load {os.getloadavg()[0]:.1f} at the start.\n\n"
           "Scene: 40 x 40 x 60 lattice, curve shire2016-cu1.5-loose; `graded` is a base of Cu 4.5 with D85 = Dc5, `passive` the same shape,\n"

@@ -277,6 +277,7 @@ notes! {
     BeyondAnyLimit,
     NoClearBoundary,
     BeyondUnclearBoundary,
+    /// The filter is within the boundary of continuing erosion; excessive erosion is not judged.
     ExcessiveNotJudged,
     /// Formula of the limit from fines and D85B: its factor, the fines content (%) at which it ends, and
     /// the fines content of the base (%).
@@ -286,6 +287,7 @@ notes! {
     /// D15B is finer than the finest sieve, and this multiple of it is smaller (mm) than the minimum for
     /// any filter.
     LeastGoverns(f64, f64),
+    /// D15F is finer than the filter's finest sieve and at most the value.
     D15FAtMost,
     /// D15B is finer than the base's finest sieve: the limit is at most the one given.
     LimitAtMost,

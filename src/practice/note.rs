@@ -23,8 +23,7 @@ pub struct Entry {
 /// Several names in a note.
 type NameList = Vec<String>;
 
-/// A note as files have it. One form for all notes compiles in a tenth of the time that a form for each
-/// takes.
+/// A note as files have it. One form for all notes compiles in a tenth of the time that one for each takes.
 #[derive(Serialize, Deserialize)]
 struct Record {
     id: String,
@@ -126,10 +125,8 @@ macro_rules! notes {
                 let numbers = match note {
                     $(Note::$name { $($number),* } => vec![$((stringify!($number), value($number))),*],)*
                 };
-                Self {
-                    id,
-                    numbers: numbers.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
-                }
+                let numbers = numbers.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+                Self { id, numbers }
             }
         }
 

@@ -86,13 +86,22 @@ impl InputFile {
 /// Usual sizes of a soil by name; `None` if the sieves do not give one. Without a unit, fines and group
 /// are omitted.
 pub fn sizes_of(rows: &[[f64; 2]], unit: SizeUnit) -> Vec<(&'static str, Option<String>)> {
-    const NAMES: [&str; 9] = ["D5", "D10", "D15", "D30", "D50", "D60", "D85", "D90", "D95"];
-    const PERCENTS: [f64; 9] = [5.0, 10.0, 15.0, 30.0, 50.0, 60.0, 85.0, 90.0, 95.0];
+    const SIZES: [(&str, f64); 9] = [
+        ("D5", 5.0),
+        ("D10", 10.0),
+        ("D15", 15.0),
+        ("D30", 30.0),
+        ("D50", 50.0),
+        ("D60", 60.0),
+        ("D85", 85.0),
+        ("D90", 90.0),
+        ("D95", 95.0),
+    ];
     let soil = Gradation::of_rows(rows).ok();
     let soil = soil.as_ref();
     let size = |percent| Some(length(soil?.d(percent)?, unit).in_both_units());
     let few = |number: f64| significant(number).in_digits(3).to_string();
-    let mut all: Vec<_> = NAMES.into_iter().zip(PERCENTS.map(size)).collect();
+    let mut all: Vec<_> = SIZES.map(|(name, percent)| (name, size(percent))).into();
     all.extend([
         ("Cu", soil.and_then(Gradation::cu).map(few)),
         ("Cc", soil.and_then(Gradation::cc).map(few)),

@@ -345,9 +345,12 @@ impl Mistake {
             let sizes = Box::new([[d15b, regraded], of_filter]);
             return Some(Self { kind, note, sizes, regraded_at_mm });
         }
-        let note = Note::FilterOfBoulders { d50_mm: d50f.least };
-        let (kind, sizes) = (MistakeKind::Boulders, Box::new(sizes));
-        (d50f.least > BOULDERS_MM && !scale_free).then_some(Self { kind, note, sizes, regraded_at_mm: None })
+        (d50f.least > BOULDERS_MM && !scale_free).then(|| Self {
+            kind: MistakeKind::Boulders,
+            note: Note::FilterOfBoulders { d50_mm: d50f.least },
+            sizes: Box::new(sizes),
+            regraded_at_mm: None,
+        })
     }
 
     /// Looks for mistakes in two envelopes, with every base and the coarsest filter. A single sensible

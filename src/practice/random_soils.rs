@@ -1,11 +1,19 @@
 //! Properties over thousands of random soils: missing sieves and a worse soil never improve a filter, one
 //! curve in two notations gives the same answer, and an envelope is as bad as its worst curve.
 //!
-//! Exceptions: up to [`USUAL_STEP`] practice reads a straight line, a base hides a gap only beyond
-//! [`WIDE_STEP`], and a filter hides nothing of its own stability where 5 % or less pass. Single sieves can
-//! decide if a curve is flat enough to be a gap, so bases with fewer sieves are exempt. Without sieves for
-//! its Cu and fines a base with gravel is regraded, which is the stricter reading: finer sieves may show
-//! that it is not needed, and widen its limits. From 15 % fines, limits by fines replace Terzaghi's ratio.
+//! Exceptions for missing sieves: up to [`USUAL_STEP`] practice reads a straight line, so leaving out a
+//! sieve between two that are no further apart may change an answer. A base hides a gap only between
+//! sieves further apart than [`WIDE_STEP`], and a filter hides nothing of its own stability where 5 % or
+//! less pass. Single sieves can decide if a curve is flat enough to be a gap, so bases with fewer sieves
+//! are exempt.
+//!
+//! A worse soil:
+//! - a dispersive base breaks every rule that it would break otherwise, and its limits are never wider;
+//! - an open joint removes no result;
+//! - with more of its fines sieved, a base breaks every limit of D15F that it broke before, and keeps every
+//!   one that it kept before. Exceptions: Cu and fines decide if a base with gravel is regraded. Without
+//!   sieves for them it is regraded, which is the stricter reading; finer sieves may show that regrading is
+//!   not needed, and widen its limits. From 15 % fines, limits by fines replace Terzaghi's ratio.
 
 use crate::decision::Standing;
 use crate::rules::{BaseSoil, NamedCurve, RuleInputs, apply};

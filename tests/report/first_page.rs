@@ -349,8 +349,8 @@ fn the_first_printed_sheet_is_complete() {
         // Letter is the shorter sheet: it is printed of those with the most to say.
         for paper in ["a4", "letter"].into_iter().take(if findings > 7 { 2 } else { 1 }) {
             let pdf = folder.path().join("page.pdf");
-            let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/browser/look_at_report.sh");
-            let said = Command::new("sh").arg(script).args([&page, &pdf]).arg(paper).output().unwrap();
+            let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/browser/look_at_report.py");
+            let said = Command::new("python3").arg(script).args([&page, &pdf]).arg(paper).output().unwrap();
             assert!(said.status.success(), "{at}, {paper}: {}", String::from_utf8_lossy(&said.stderr));
             let said = Command::new("pdftotext").args(["-f", "1", "-l", "1"]).arg(&pdf).arg("-").output();
             let text = String::from_utf8(said.unwrap().stdout).unwrap();
@@ -403,7 +403,7 @@ fn every_rule_has_a_source_that_can_be_cited() {
     }
 }
 
-/// The rest is looked at in a browser: `scripts/browser/look_at_report.sh REPORT.html OUT.pdf`.
+/// The rest is looked at in a browser: `scripts/browser/look_at_report.py REPORT.html OUT.pdf`.
 #[test]
 fn print_opens_what_is_collapsed_and_keeps_heads_of_tables() {
     let page = made(&Plan::usual()).0;

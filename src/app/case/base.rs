@@ -141,13 +141,14 @@ impl CaseSupply {
         };
         let (gradation, grains) = (&filter.gradation, filter.grains_per_void);
         let by_eq2 = |ratio, grains, cap| base_particles(ratio, grains, voids, taken, gradation, cap);
-        let (n_base, n_base_eq2, capped, mass_ratio) = match scene.base.amount() {
+        let (sampler, n_base, n_base_eq2, capped, mass_ratio) = match scene.base.amount() {
             Amount::Number(n) => {
                 let n_base = times(n)?;
+                let sampler = SizeSampler::new(taken, filter.unit_mm)?;
                 let eq2 = grains.map(|grains| by_eq2(PAPER_MASS_RATIO, grains, None)).transpose()?;
                 let per_grain = taken.particles_per_unit_volume() / gradation.particles_per_unit_volume();
                 let mass_ratio = grains.map(|grains| n_base as f64 / (grains * voids as f64 * per_grain));
-                (n_base, eq2.map(|supply| supply.n_base_eq2), false, mass_ratio)
+                (sampler, n_base, eq2.map(|supply| supply.n_base_eq2), false, mass_ratio)
             }
             Amount::MassRatio(ratio, cap) => {
                 let cap = cap.map(times).transpose()?;
@@ -167,10 +168,10 @@ impl CaseSupply {
                     return Err(scene.clash(problem).into());
                 }
                 let ratio = if capped { ratio * n_base as f64 / n_base_eq2 as f64 } else { ratio };
-                (n_base, Some(n_base_eq2), capped, Some(ratio))
+                let sampler = SizeSampler::new(taken, filter.unit_mm)?;
+                (sampler, n_base, Some(n_base_eq2), capped, Some(ratio))
             }
         };
-        let sampler = SizeSampler::new(taken, filter.unit_mm)?;
         Ok(Self { pan_is_walked, sampler, n_base, n_base_eq2, capped, mass_ratio })
     }
 }

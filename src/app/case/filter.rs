@@ -45,9 +45,10 @@ pub struct CaseFilter {
 
 impl CaseFilter {
     /// Reads the filter that a scene states, and the network of its replicates if they all walk one; `packed`
-    /// and `measured` are its packing and that packing's voids, if they already exist.
+    /// and `measured` are its packing and that packing's voids, if they already exist. Sets the layers of a
+    /// thickness before the curve is built, so that the thickness is refused first.
     pub(super) fn read(
-        scene: &Scene,
+        scene: &mut Scene,
         packed: Option<PackedFilter>,
         measured: Option<Arc<GraphPacking>>,
         files: &mut Files,
@@ -87,6 +88,7 @@ impl CaseFilter {
             (None, None) => stated,
         };
         let fixed = FixedNetwork::read(scene, &gradation, graph.as_ref(), files)?;
+        set_layers_of_thickness(scene, &gradation)?;
         let unit_mm = gradation.smallest_mm();
         let curve = match (fixed.as_ref().filter(|fixed| fixed.packing.is_none()), stated) {
             (Some(fixed), _) => fixed.curve()?,
@@ -194,6 +196,26 @@ fn gradation(
         }
         (FilterGradation::Sieve(path, d0_mm), _) => files.sieve(path, *d0_mm, "filter.sieve", &scene.name),
     }
+}
+
+/// Sets the number of layers of a lattice from the scene's thickness and this filter.
+fn set_layers_of_thickness(scene: &mut Scene, filter: &Gradation) -> Result<(), CaseError> {
+    let (NetworkSource::Cubic(_), extent) = (scene.network.source(), scene.network.extent()) else {
+        return Ok(());
+    };
+    let unit_mm = filter.smallest_mm();
+    let Some(mm) = extent.thickness_mm(filter.d(50.0).unwrap_or(unit_mm)) else { return Ok(()) };
+    let layer = filter.d_by_number(50.0).unwrap_or(unit_mm);
+    let layers = (mm / layer).round();
+    if layers < 1.0 {
+        let problem = format!(
+            "the network is to be {mm:.4} mm thick, but one layer of voids, D50F by number, is {layer:.4} \
+             mm: allowed: half a layer or more (network.thickness_mm, network.thickness_d50f)"
+        );
+        return Err(scene.clash(problem).into());
+    }
+    scene.network.set_layers(layers.min(f64::from(u32::MAX)) as u64);
+    Ok(())
 }
 
 /// Network that all replicates walk.

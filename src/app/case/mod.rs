@@ -36,7 +36,7 @@ use crate::scene::{NetworkSource, Scene};
 use base::as_passive;
 use files::Files;
 use filter::GraphPacking;
-use network::{placeholder_shape, set_layers_of_thickness};
+use network::placeholder_shape;
 use std::borrow::Cow;
 use std::sync::Arc;
 use voidwalk_core::gradation::Gradation;
@@ -101,8 +101,7 @@ impl Case {
         known: Vec<Input>,
     ) -> Result<Self, CaseError> {
         let mut files = Files { known, ..Files::default() };
-        let (filter, fixed) = CaseFilter::read(&scene, packed, measured, &mut files)?;
-        set_layers_of_thickness(&mut scene, &filter.gradation)?;
+        let (filter, fixed) = CaseFilter::read(&mut scene, packed, measured, &mut files)?;
         let base = CaseBase::read(&scene, &filter, &mut files)?;
         let scale_free = fixed.is_none() && filter.is_scale_free(&scene);
         let mistake = base.mistake(&scene, &filter.gradation, scale_free)?;

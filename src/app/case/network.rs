@@ -112,26 +112,6 @@ fn connectivity(network: &Network) -> Vec<[f64; 2]> {
     counts.into_iter().map(|(k, count)| [f64::from(k), percent(count)]).collect()
 }
 
-/// Sets the number of layers of a lattice from the scene's thickness and this filter.
-pub(super) fn set_layers_of_thickness(scene: &mut Scene, filter: &Gradation) -> Result<(), CaseError> {
-    let (NetworkSource::Cubic(_), extent) = (scene.network.source(), scene.network.extent()) else {
-        return Ok(());
-    };
-    let unit_mm = filter.smallest_mm();
-    let Some(mm) = extent.thickness_mm(filter.d(50.0).unwrap_or(unit_mm)) else { return Ok(()) };
-    let layer = filter.d_by_number(50.0).unwrap_or(unit_mm);
-    let layers = (mm / layer).round();
-    if layers < 1.0 {
-        let problem = format!(
-            "the network is to be {mm:.4} mm thick, but one layer of voids, D50F by number, is {layer:.4} \
-             mm: allowed: half a layer or more (network.thickness_mm, network.thickness_d50f)"
-        );
-        return Err(scene.clash(problem).into());
-    }
-    scene.network.set_layers(layers.min(f64::from(u32::MAX)) as u64);
-    Ok(())
-}
-
 /// Lattice about as large as the graph of a packing that does not exist yet.
 pub(super) fn placeholder_shape(scene: &Scene, filter: &Gradation) -> [u32; 3] {
     let grains = scene.packing.as_ref().and_then(|packing| packing.filter.grains).unwrap_or(9_000);

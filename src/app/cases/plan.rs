@@ -226,17 +226,17 @@ impl CasePlan {
         let levels: Vec<&[Level]> = factors.iter().map(|(_, levels)| &levels[..]).collect();
         let combinations = if factors.is_empty() { Vec::new() } else { crossed(&levels) };
         for chosen in combinations {
-            let mut settings = vec![common.clone()];
-            settings.extend(chosen.iter().map(|(_, settings)| settings.clone()));
-            let chosen = chosen.iter().map(|(level, _)| level.clone());
-            let levels: Vec<(String, String)> = plan.factors.iter().cloned().zip(chosen).collect();
+            let names = chosen.iter().map(|(level, _)| level.clone());
+            let levels: Vec<(String, String)> = plan.factors.iter().cloned().zip(names).collect();
             let is_level =
-                |(factor, level): (&String, &String)| levels.contains(&(factor.clone(), level.clone()));
+                |(factor, level): (&String, &String)| levels.iter().any(|(f, l)| f == factor && l == level);
             if written.leave_out.iter().any(|combination| combination.iter().all(is_level)) {
                 continue;
             }
             let names: Vec<String> =
                 levels.iter().map(|(factor, level)| format!("{factor}={level}")).collect();
+            let mut settings = vec![common.clone()];
+            settings.extend(chosen.iter().map(|(_, settings)| settings.clone()));
             plan.add(&written, base.as_deref(), names.join(","), levels, &settings)?;
         }
         for single in &written.case {
@@ -264,7 +264,8 @@ impl CasePlan {
         }
         let folder = folder_name(&name);
         // Some systems' disks do not distinguish upper from lower case.
-        let is_alike = |case: &&PlannedCase| case.folder_name().to_lowercase() == folder.to_lowercase();
+        let lower = folder.to_lowercase();
+        let is_alike = |case: &&PlannedCase| case.folder_name().to_lowercase() == lower;
         if let Some(PlannedCase { name: other, .. }) = self.cases.iter().find(is_alike) {
             return clash(format!(
                 "cases `{other}` and `{name}` would share the folder {folder} on some systems: rename one"

@@ -6,8 +6,8 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand};
 
 use super::options::{
-    AcceptArgs, BOUNDARY, DESIGN, PACK, RULES, ResultArgs, SceneArgs, SettingArgs, SettingOptions, WalkArgs,
-    density, facets, lattice_size, length, schema_of, seed, threads, time,
+    AcceptArgs, OfBoundary, OfPacking, OfRules, OfSpecification, ResultArgs, SceneArgs, SettingArgs,
+    SettingOptions, WalkArgs, density, facets, lattice_size, length, schema_of, seed, threads, time,
 };
 use crate::cases::CasePart;
 use crate::run::machine::bytes_from_words;
@@ -114,7 +114,7 @@ pub(crate) struct RulesArgs {
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) csv: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) settings: SettingOptions<RULES>,
+    pub(crate) settings: SettingOptions<OfRules>,
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub(crate) as_given: bool,
@@ -263,7 +263,7 @@ pub(crate) struct DesignArgs {
     #[arg(long, value_name = "SERIES", default_value = "us")]
     pub(crate) sieves: SieveSeries,
     #[command(flatten)]
-    pub(crate) settings: SettingOptions<DESIGN>,
+    pub(crate) settings: SettingOptions<OfSpecification>,
     /// Folder for the results [default: voidwalk-specification; with --each voidwalk-designs]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -307,7 +307,7 @@ pub(crate) struct BoundaryArgs {
     #[arg(long)]
     pub(crate) as_given: bool,
     #[command(flatten)]
-    pub(crate) settings: SettingOptions<BOUNDARY>,
+    pub(crate) settings: SettingOptions<OfBoundary>,
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = "voidwalk-boundary")]
     pub(crate) out: PathBuf,
@@ -379,7 +379,7 @@ pub(crate) struct PackArgs {
     /// scene works too
     pub(crate) filter: PathBuf,
     #[command(flatten)]
-    pub(crate) settings: SettingOptions<PACK>,
+    pub(crate) settings: SettingOptions<OfPacking>,
     /// Folder for the packing: new, empty, or with a stopped packing, which continues [default: one of its
     /// own in voidwalk-packings]
     #[arg(long, value_name = "DIR")]

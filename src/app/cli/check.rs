@@ -53,7 +53,9 @@ fn words(check: &Check) -> String {
     let (dc0, dc100) = (at(filter.constrictions.first()), at(filter.constrictions.last()));
     line("  constrictions", format!("Dc0 {dc0:.4}, Cu_CSD {:.3}, to {dc100:.4} {unit}", filter.cu_csd));
     let packing = check.packing.as_ref().map(packing_words);
-    packing.iter().for_each(|[packing, _]| line("  packing", packing.clone()));
+    if let Some([packing, _]) = &packing {
+        line("  packing", packing.clone());
+    }
     line("base", base.name.clone());
     let [d0, d85, d95, d100] = [base.d0_mm, base.d85_mm, base.d95_mm, base.d100_mm];
     let grading = check.inputs.base_size().map_or(String::new(), |base| format!(", {}", grading(&base)));
@@ -92,7 +94,9 @@ fn words(check: &Check) -> String {
     let (runs, increments) = (check.runs_to_walk, check.increments);
     line("to walk", format!("{runs} runs, at most {increments} increments of insertion each"));
     line("memory", check.memory.clone());
-    packing.iter().for_each(|[_, time]| line("time to pack", time.clone()));
+    if let Some([_, time]) = packing {
+        line("time to pack", time);
+    }
     line("time to walk", format!("about {} of one core, a rough guess", duration(check.core_seconds)));
     check.left_out.iter().for_each(|part| line("left out", left_out(part, unit)));
     check.notes.iter().for_each(|note| line("note", sentence(note, in_unit)));

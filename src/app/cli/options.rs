@@ -1,6 +1,7 @@
 //! Options shared by several commands. Settings of a scene (`--joint-mm` is `filter.joint_mm`) have their
 //! help, allowed values and errors from the table of settings.
 
+use std::marker::PhantomData;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -18,65 +19,82 @@ use voidwalk_core::schema::length::{LENGTHS, millimetres};
 use voidwalk_core::schema::{KeyInfo, Value, setting_name};
 use voidwalk_core::store::format::FORMATS;
 
-/// Settings of a command: full names of those with an option of their own, and the help of `--set`, if the
-/// command has it.
-pub(crate) struct CommandSettings {
-    pub(crate) options: &'static [&'static str],
-    set: Option<&'static str>,
+/// Settings of a command.
+pub(crate) trait CommandSettings {
+    /// Full names of the settings that have an option of their own.
+    const OPTIONS: &'static [&'static str];
+    /// Help of `--set`; `None` for a command without it.
+    const SET: Option<&'static str>;
 }
 
-/// Positions of commands in [`SETTINGS`]; `run` stands for `check` and `judge`, too.
-pub(crate) const RUN: usize = 0;
-pub(crate) const BOUNDARY: usize = 1;
-pub(crate) const PACK: usize = 2;
-pub(crate) const DESIGN: usize = 3;
-pub(crate) const RULES: usize = 4;
+/// Settings of `run`, `check` and `judge`.
+pub(crate) struct OfScene;
 
-pub(crate) const SETTINGS: [CommandSettings; 5] = [
-    CommandSettings {
-        options: &[
-            "seed",
-            "stop.target_error_pp",
-            "stop.decide_percent",
-            "base.dispersive",
-            "filter.joint_mm",
-            "about.units",
-        ],
-        set: Some("Replace a setting, for example --set base.cu=3; can be repeated"),
-    },
-    CommandSettings {
-        options: &["seed", "about.units"],
-        set: Some(
-            "Replace a setting, for example --set filter.grains_per_void=0.43 or --set replicates=20; can be \
-             repeated",
-        ),
-    },
-    CommandSettings {
-        options: &["packing.seed"],
-        set: Some("Replace a setting, for example --set packing.grains=20000; can be repeated"),
-    },
-    CommandSettings {
-        options: &["about.units", "base.dispersive"],
-        set: Some("State a fact on the page, for example --set about.project=\"Main dam\"; can be repeated"),
-    },
-    CommandSettings { options: &["base.dispersive", "filter.joint_mm"], set: None },
-];
+impl CommandSettings for OfScene {
+    const OPTIONS: &'static [&'static str] = &[
+        "seed",
+        "stop.target_error_pp",
+        "stop.decide_percent",
+        "base.dispersive",
+        "filter.joint_mm",
+        "about.units",
+    ];
+    const SET: Option<&'static str> = Some("Replace a setting, for example --set base.cu=3; can be repeated");
+}
 
-pub(crate) struct SettingOptions<const COMMAND: usize> {
+/// Settings of `boundary`.
+pub(crate) struct OfBoundary;
+
+impl CommandSettings for OfBoundary {
+    const OPTIONS: &'static [&'static str] = &["seed", "about.units"];
+    const SET: Option<&'static str> = Some(
+        "Replace a setting, for example --set filter.grains_per_void=0.43 or --set replicates=20; can be \
+         repeated",
+    );
+}
+
+/// Settings of `pack`.
+pub(crate) struct OfPacking;
+
+impl CommandSettings for OfPacking {
+    const OPTIONS: &'static [&'static str] = &["packing.seed"];
+    const SET: Option<&'static str> =
+        Some("Replace a setting, for example --set packing.grains=20000; can be repeated");
+}
+
+/// Settings of `design`.
+pub(crate) struct OfSpecification;
+
+impl CommandSettings for OfSpecification {
+    const OPTIONS: &'static [&'static str] = &["about.units", "base.dispersive"];
+    const SET: Option<&'static str> =
+        Some("State a fact on the page, for example --set about.project=\"Main dam\"; can be repeated");
+}
+
+/// Settings of `rules`.
+pub(crate) struct OfRules;
+
+impl CommandSettings for OfRules {
+    const OPTIONS: &'static [&'static str] = &["base.dispersive", "filter.joint_mm"];
+    const SET: Option<&'static str> = None;
+}
+
+/// Settings that the user of a command gave.
+pub(crate) struct SettingOptions<C> {
     /// Assignments, each as `KEY=VALUE`.
     pub(crate) assignments: Vec<String>,
+    command: PhantomData<C>,
 }
 
-impl<const COMMAND: usize> Args for SettingOptions<COMMAND> {
+impl<C: CommandSettings> Args for SettingOptions<C> {
     fn augment_args(command: Command) -> Command {
-        let CommandSettings { options, set } = &SETTINGS[COMMAND];
-        let set = set.map(|help| {
+        let set = C::SET.map(|help| {
             let set = Arg::new(SET).long(SET).value_name("KEY=VALUE").action(ArgAction::Append);
             set.value_parser(assignment).help(help)
         });
         let all = Scene::keys();
         let key = |name: &&str| all.iter().find(|key| key.full_name() == *name).cloned();
-        command.args(set).args(options.iter().filter_map(key).map(option))
+        command.args(set).args(C::OPTIONS.iter().filter_map(key).map(option))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -84,13 +102,12 @@ impl<const COMMAND: usize> Args for SettingOptions<COMMAND> {
     }
 }
 
-impl<const COMMAND: usize> FromArgMatches for SettingOptions<COMMAND> {
+impl<C: CommandSettings> FromArgMatches for SettingOptions<C> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let CommandSettings { options, set } = &SETTINGS[COMMAND];
-        let set = set.and_then(|_| matches.get_many::<String>(SET));
+        let set = C::SET.and_then(|_| matches.get_many::<String>(SET));
         let set: Vec<String> = set.into_iter().flatten().cloned().collect();
         let mut assignments = set.clone();
-        for key in *options {
+        for key in C::OPTIONS {
             let Some(value) = matches.get_one::<String>(key) else { continue };
             let is_this = |set: &&String| setting_name(set) == *key;
             if let Some(twice) = set.iter().find(is_this) {
@@ -100,7 +117,7 @@ impl<const COMMAND: usize> FromArgMatches for SettingOptions<COMMAND> {
             }
             assignments.push(format!("{key}={value}"));
         }
-        Ok(Self { assignments })
+        Ok(Self { assignments, command: PhantomData })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
@@ -193,7 +210,7 @@ pub(crate) struct SceneArgs {
 #[derive(Args)]
 pub(crate) struct SettingArgs {
     #[command(flatten)]
-    pub(crate) settings: SettingOptions<RUN>,
+    pub(crate) settings: SettingOptions<OfScene>,
     /// Folder that keeps packings, so that each is made once
     #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
     pub(crate) packings: PathBuf,
@@ -266,26 +283,32 @@ pub(super) fn length(text: &str) -> Result<f64, String> {
 mod tests {
     use super::*;
 
-    fn read<const COMMAND: usize>(words: &[&str]) -> Result<Vec<String>, clap::Error> {
-        let command = SettingOptions::<COMMAND>::augment_args(Command::new("x").no_binary_name(true));
+    fn read<C: CommandSettings>(words: &[&str]) -> Result<Vec<String>, clap::Error> {
+        let command = SettingOptions::<C>::augment_args(Command::new("x").no_binary_name(true));
         let matches = command.try_get_matches_from(words)?;
-        SettingOptions::<COMMAND>::from_arg_matches(&matches).map(|options| options.assignments)
+        SettingOptions::<C>::from_arg_matches(&matches).map(|options| options.assignments)
     }
 
     #[test]
     fn every_option_is_a_setting() {
         let all: Vec<String> = Scene::keys().iter().map(KeyInfo::full_name).collect();
-        let mut named = SETTINGS.iter().flat_map(|command| command.options);
-        assert!(named.all(|name| all.iter().any(|key| key == name)));
+        let named = [
+            OfScene::OPTIONS,
+            OfBoundary::OPTIONS,
+            OfPacking::OPTIONS,
+            OfSpecification::OPTIONS,
+            OfRules::OPTIONS,
+        ];
+        assert!(named.concat().iter().all(|name| all.iter().any(|key| key == name)));
     }
 
     #[test]
     fn options_become_settings() {
         let words = ["--set", "base.cu=2", "--seed", "3", "--dispersive", "--joint-mm", "1/8in"];
         let settings = ["base.cu=2", "seed=3", "base.dispersive=true", "filter.joint_mm=1/8in"];
-        assert_eq!(read::<RUN>(&words).unwrap(), settings);
-        assert_eq!(read::<RULES>(&["--dispersive=false"]).unwrap(), ["base.dispersive=false"]);
-        assert!(read::<RULES>(&["--set", "base.cu=2"]).is_err());
+        assert_eq!(read::<OfScene>(&words).unwrap(), settings);
+        assert_eq!(read::<OfRules>(&["--dispersive=false"]).unwrap(), ["base.dispersive=false"]);
+        assert!(read::<OfRules>(&["--set", "base.cu=2"]).is_err());
     }
 
     #[test]
@@ -297,14 +320,14 @@ mod tests {
             (["--joint-mm", "2 furlongs"], "3/8in"),
             (["--units", "yards"], "\"us\""),
         ] {
-            let problem = read::<RUN>(&words).unwrap_err().to_string();
+            let problem = read::<OfScene>(&words).unwrap_err().to_string();
             assert!(problem.contains(words[0]) && problem.contains(allowed), "{problem}");
         }
     }
 
     #[test]
     fn a_setting_that_is_given_twice_is_refused() {
-        let problem = read::<RUN>(&["--seed", "3", "--set", " seed = 4"]).unwrap_err().to_string();
+        let problem = read::<OfScene>(&["--seed", "3", "--set", " seed = 4"]).unwrap_err().to_string();
         let wanted = "--seed and --set  seed = 4 say the same thing twice: give one";
         assert!(problem.contains(wanted), "{problem}");
     }

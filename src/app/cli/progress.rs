@@ -165,7 +165,12 @@ impl Display {
                     self.line(&format!("{}: {}\n", line.name(), plain(&words)));
                 }
             }
-            _ => {
+            Event::Packing(_)
+            | Event::Increment { .. }
+            | Event::RunDone
+            | Event::RunWalked { .. }
+            | Event::VerdictNeeds { .. }
+            | Event::MoreRuns { .. } => {
                 if let Some(shown) = self.shown.lock().ok().as_mut().and_then(|shown| shown.as_mut()) {
                     shown.tell(event);
                 }
@@ -233,7 +238,9 @@ impl Shown {
             }
             (Work::Walk(walk), Event::MoreRuns { runs: more }) => {
                 walk.runs += more;
-                self.bar.iter().for_each(|bar| bar.inc_length(more));
+                if let Some(bar) = &self.bar {
+                    bar.inc_length(more);
+                }
             }
             (Work::Walk(Walk { done, runs, .. }), Event::RunDone) => {
                 *done += 1;
@@ -310,7 +317,11 @@ pub(crate) fn followed_cases<T>(
                     let _ = shown.set(CaseDisplay::new(total, done, every_event));
                 }
             },
-            on_case: &|case, event| shown.get().iter().for_each(|shown| shown.tell(case, event)),
+            on_case: &|case, event| {
+                if let Some(shown) = shown.get() {
+                    shown.tell(case, event);
+                }
+            },
         });
         if let Some(bar) = shown.get().and_then(|shown| shown.bar.as_ref()) {
             bar.finish_and_clear();

@@ -86,7 +86,9 @@ fn words(soils: &[SoilSummary]) -> String {
         line("Cu, Cc", format!("{}, {}", number(soil.cu), number(soil.cc)));
         line("fines", percent(soil.fines_percent, "finer than 0.075 mm"));
         line("gravel", percent(soil.gravel_percent, "coarser than 4.75 mm"));
-        soil.class.iter().for_each(|class| line("class (ASTM D2487)", class.clone()));
+        if let Some(class) = &soil.class {
+            line("class (ASTM D2487)", class.clone());
+        }
         soil.notes.iter().for_each(|note| line("note", note.clone()));
     }
     text

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::args::{BoundaryArgs, DesignArgs, PercolationArgs};
-use super::options::{DESIGN, SETTINGS};
+use super::options::{CommandSettings, OfSpecification};
 use super::print::{self, answer, counted, shown};
 use super::progress::{followed, unfollowed};
 use super::rules::{aligned, in_notes};
@@ -31,7 +31,7 @@ use voidwalk_practice::quantity::{NumberRole, SizeUnit, significant};
 use voidwalk_practice::{DesignedSamples, Note};
 
 pub(crate) fn design(args: &DesignArgs) -> Result<(), RunError> {
-    let takes = [About::texts(), SETTINGS[DESIGN].options.iter().map(ToString::to_string).collect()].concat();
+    let takes = [About::texts(), OfSpecification::OPTIONS.iter().map(ToString::to_string).collect()].concat();
     let settings = &args.settings.assignments;
     let is_taken = |set: &str| takes.iter().any(|name| setting_name(set) == name);
     if let Some(other) = settings.iter().find(|set| !is_taken(set)) {

@@ -184,11 +184,13 @@ pub(super) fn eroded(walks: &Walks) -> Option<Drawn> {
         if all.is_empty() {
             continue;
         }
-        for rows in all.iter().take(if all.len() > 1 { DRAWN } else { 0 }) {
-            let point = |row: &SeriesRow| (row.increment as f64, row.eroded_mass_fraction * 100.0);
-            let stay = rows.last().map(|row| (last as f64, point(row).1));
-            let curve = [(0.0, 0.0)].into_iter().chain(rows.iter().map(point)).chain(stay).collect();
-            figure.add(Mark::line(curve, colour).width(0.8).opacity(0.45));
+        if all.len() > 1 {
+            for rows in all.iter().take(DRAWN) {
+                let point = |row: &SeriesRow| (row.increment as f64, row.eroded_mass_fraction * 100.0);
+                let stay = rows.last().map(|row| (last as f64, point(row).1));
+                let curve = [(0.0, 0.0)].into_iter().chain(rows.iter().map(point)).chain(stay).collect();
+                figure.add(Mark::line(curve, colour).width(0.8).opacity(0.45));
+            }
         }
         let increments: BTreeSet<u64> =
             all.iter().flat_map(|rows| rows.iter().map(|row| row.increment)).collect();

@@ -161,6 +161,8 @@ impl Checkpoints {
         shared.passed_over.extend(refused.iter().map(ToString::to_string));
         let Some(saved) = saved else { return Ok(None) };
         shared.generations.insert(name, saved.label.generation);
+        // Replicates parse side by side, and a parser that panics must not poison the lock.
+        drop(shared);
         Ok(Some((saved.read_record("done")?, saved)))
     }
 

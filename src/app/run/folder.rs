@@ -283,7 +283,7 @@ pub(super) fn clear_but_scene(folder: &Folder) -> Result<(), StoreError> {
 fn clear_results(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
     let files: Vec<&str> = kind.files().iter().copied().filter(|name| *name != "scene.toml").collect();
     folder.remove_all(&files)?;
-    // Pictures were made from the drawings by other tools, such as `scripts/browser/figures_to_png.sh`.
+    // Pictures were made from the drawings by other tools, such as `scripts/browser/figures_to_png.py`.
     let both = |name: &&str| ["svg", "png"].map(|ending| format!("{name}.{ending}"));
     let figures: Vec<String> = kind.figures().iter().flat_map(both).collect();
     folder.remove_all_in("figures", &figures)?;

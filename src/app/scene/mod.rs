@@ -248,50 +248,58 @@ impl Scene {
 
     /// Refuses a network that mixes lattice and graph, and an exit rule that it does not allow.
     fn check_network(&self, s: &GivenSettings) -> Result<(), SceneError> {
-        let network = &self.network;
-        let graph = network.kind == Some(NetworkMadeOf::Graph);
-        let of_grains = graph && network.packing.is_some();
-        let of_file = network.file.is_some();
-        let of_arrays = network.is_of_arrays();
-        // Refuses the first of these settings that is given, if they do not apply.
-        let wrong = |applies: bool, names: &[&str], problem: &str| match names
-            .iter()
-            .find(|name| applies && s.has(name))
-        {
+        let graph = self.network.kind == Some(NetworkMadeOf::Graph);
+        let wrong = |names: &[&str], problem: &str| match names.iter().find(|name| s.has(name)) {
             Some(name) => Err(s.clash(format!("{name} {problem}"))),
             None => Ok(()),
         };
-        let of_lattice = ["network.nx", "network.ny", "network.nz", "network.connectivity", "network.file"];
-        let problem = "does not go with network.kind = \"graph\": a packing has its voids where they are";
-        wrong(graph, &of_lattice, problem)?;
-        let problem = "is for a lattice: a packing's voids conduct as they do";
-        wrong(graph, &["walk.conductance_exponent"], problem)?;
-        let problem = "says what the constrictions are, but network.packing brings its own: keep one";
-        wrong(of_grains, &["filter.curve", "filter.library", "filter.estimate"], problem)?;
-        // A run keeps the grains of the filter that it packed, and states both.
-        let is_new = of_grains && self.filter.measured.is_none();
-        wrong(is_new, &["filter.density", "filter.friction"], problem)?;
-        if graph && !of_grains && self.packing.is_none() {
-            return Err(s.clash(
-                "network.kind = \"graph\" needs grains: filter.density packs them, or network.packing names \
-                 a file of them",
-            ));
+        if graph {
+            wrong(
+                &["network.nx", "network.ny", "network.nz", "network.connectivity", "network.file"],
+                "does not go with network.kind = \"graph\": a packing has its voids where they are",
+            )?;
+            wrong(&["walk.conductance_exponent"], "is for a lattice: a packing's voids conduct as they do")?;
+            if self.network.packing.is_some() {
+                let problem = "says what the constrictions are, but network.packing brings its own: keep one";
+                wrong(&["filter.curve", "filter.library", "filter.estimate"], problem)?;
+                // A run keeps the grains of the filter that it packed, and states both.
+                if self.filter.measured.is_none() {
+                    wrong(&["filter.density", "filter.friction"], problem)?;
+                }
+            }
+            if self.network.packing.is_none() && self.packing.is_none() {
+                return Err(s.clash(
+                    "network.kind = \"graph\" needs grains: filter.density packs them, or network.packing \
+                     names a file of them",
+                ));
+            }
+        } else {
+            wrong(&["network.packing", "network.copies"], "goes with network.kind = \"graph\"")?;
         }
-        let problem = "goes with network.kind = \"graph\"";
-        wrong(!graph, &["network.packing", "network.copies"], problem)?;
-        let problem = "needs to know where voids lie, which a network from a file does not say";
-        wrong(of_file, &["record.voids"], problem)?;
-        let without_grains = network.packing.is_none();
-        wrong(without_grains, &["network.cell"], "goes with network.packing")?;
-        let problem = "goes with network.packing, or with an .npz as network.file";
-        wrong(without_grains && !of_arrays, &["network.unit"], problem)?;
-        let problem = "is for a lattice: arrays say what conducts, or the fourth power does";
-        wrong(of_arrays, &["walk.conductance_exponent"], problem)?;
-        let thickness = ["network.thickness_mm", "network.thickness_d50f"];
-        let has_layers = of_file || network.connectivity.is_some();
-        wrong(has_layers, &thickness, "is for a lattice or a graph")?;
+        if self.network.file.is_some() {
+            wrong(
+                &["record.voids"],
+                "needs to know where voids lie, which a network from a file does not say",
+            )?;
+        }
+        let of_arrays = self.network.is_of_arrays();
+        if self.network.packing.is_none() {
+            wrong(&["network.cell"], "goes with network.packing")?;
+            if !of_arrays {
+                wrong(&["network.unit"], "goes with network.packing, or with an .npz as network.file")?;
+            }
+        }
+        if of_arrays {
+            wrong(
+                &["walk.conductance_exponent"],
+                "is for a lattice: arrays say what conducts, or the fourth power does",
+            )?;
+        }
+        if self.network.file.is_some() || self.network.connectivity.is_some() {
+            wrong(&["network.thickness_mm", "network.thickness_d50f"], "is for a lattice or a graph")?;
+        }
         let rule = self.exit_rule();
-        let allowed: &[ExitRule] = match (graph, &network.file, &network.connectivity) {
+        let allowed: &[ExitRule] = match (graph, &self.network.file, &self.network.connectivity) {
             (false, Some(_), _) if of_arrays => &[ExitRule::Flux, ExitRule::AreaAlongFlow, ExitRule::Area],
             (true, ..) => &[ExitRule::Flux, ExitRule::AreaAlongFlow, ExitRule::Height],
             (false, None, None) => &[ExitRule::Area, ExitRule::Flux, ExitRule::AreaAlongFlow],
@@ -299,33 +307,44 @@ impl Scene {
         };
         if !allowed.contains(&rule) {
             let words: Vec<String> = allowed.iter().map(|rule| format!("\"{}\"", rule.name())).collect();
-            let why = match graph {
-                true => {
-                    "the constrictions of a graph have no direction of their own, so that area alone leads \
-                         nowhere"
-                }
-                false => "the rule needs to know which way is which",
-            };
-            return Err(s.refuse("walk.exit", format!("{} on this network: {why}", words.join(", "))));
+            return Err(s.refuse(
+                "walk.exit",
+                format!(
+                    "{} on this network: {}",
+                    words.join(", "),
+                    match graph {
+                        true =>
+                            "the constrictions of a graph have no direction of their own, so that area alone \
+                             leads nowhere",
+                        false => "the rule needs to know which way is which",
+                    }
+                ),
+            ));
         }
-        let of_water = ["walk.rho", "walk.flow_tolerance", "walk.conductance_exponent"];
-        wrong(!rule.needs_flow(), &of_water, "says nothing where no water flows: walk.exit")?;
-        let openings = self.leaves_openings();
-        let problem = "says nothing where walk.blocked is \"open\": what openings conduct follows from the \
-                       fourth power of their size";
-        wrong(openings, &["walk.rho", "walk.conductance_exponent"], problem)?;
-        if openings && matches!(self.walk.engine, Engine::Counts | Engine::Expected) {
-            let problem = format!(
-                "\"particles\" or \"auto\": where walk.blocked is \"open\" any particle may be stopped, and \
-                 \"{}\" counts those that cannot be",
-                self.walk.engine.name()
-            );
-            return Err(s.refuse("engine", problem));
+        if !rule.needs_flow() {
+            wrong(
+                &["walk.rho", "walk.flow_tolerance", "walk.conductance_exponent"],
+                "says nothing where no water flows: walk.exit",
+            )?;
+        }
+        if self.leaves_openings() {
+            wrong(
+                &["walk.rho", "walk.conductance_exponent"],
+                "says nothing where walk.blocked is \"open\": what openings conduct follows from the fourth \
+                 power of their size",
+            )?;
+            if matches!(self.walk.engine, Engine::Counts | Engine::Expected) {
+                let problem = format!(
+                    "\"particles\" or \"auto\": where walk.blocked is \"open\" any particle may be stopped, \
+                     and \"{}\" counts those that cannot be",
+                    self.walk.engine.name()
+                );
+                return Err(s.refuse("engine", problem));
+            }
         }
         match self.law().filter(|law| law.of_concentration) {
             None => {
-                let problem = "says nothing without a law of arching that depends on it";
-                wrong(true, &["walk.concentration"], problem)
+                wrong(&["walk.concentration"], "says nothing without a law of arching that depends on it")
             }
             Some(law) if self.exits.concentration.is_none() => Err(s.clash(format!(
                 "walk.concentration is missing: \"{}\" depends on the solids fraction of the suspension that \

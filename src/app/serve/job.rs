@@ -34,6 +34,8 @@ pub(crate) enum JobState {
     Stopped,
     Done,
     Refused,
+    /// Also an unknown word in `job.json`.
+    #[serde(other)]
     Failed,
 }
 
@@ -366,6 +368,11 @@ mod tests {
         assert!(crate::run::folder::claim(&folder, FolderKind::Run, false).is_ok());
         file.ended = Some((JobState::Failed, "the disk is full".into()));
         file.write(&folder).unwrap();
+        assert_eq!(JobFile::read(&folder).as_ref(), Some(&file));
+        // A word of another version.
+        let path = folder.join(FILE);
+        let text = std::fs::read_to_string(&path).unwrap();
+        std::fs::write(&path, text.replace("\"failed\"", "\"lost\"")).unwrap();
         assert_eq!(JobFile::read(&folder).as_ref(), Some(&file));
         file.request = "x".repeat(5 << 20).into();
         assert!(file.write(&root.path().join("run-2")).unwrap_err().to_string().contains("larger than 4 MB"));

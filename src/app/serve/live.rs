@@ -55,7 +55,10 @@ impl Live {
                 self.walked.add(replicate, run, eroded_mass_fraction, below_threshold);
             }
             Event::Noted { notes, unit } => notes.iter().for_each(|note| self.warn(&sentence(note, unit))),
-            _ => {}
+            Event::Studying(_)
+            | Event::VerdictNeeds { .. }
+            | Event::VerdictStands { .. }
+            | Event::Increment { .. } => {}
         }
     }
 

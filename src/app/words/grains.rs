@@ -70,5 +70,20 @@ mod tests {
         ] {
             assert_eq!(reading(&note, "f"), words);
         }
+        let loose = |is_periodic| Doubt::Loose { void_ratio: 3.0, most: 2.0, is_periodic };
+        let dense = |is_periodic| Doubt::Dense { void_ratio: 0.1, least: 0.2, is_periodic };
+        for (note, words) in [
+            (loose(true), "leave more than 2: the cell may be too large, or in another unit than the grains"),
+            (loose(false), "3.0000, and grains that rest on each other hardly leave more than 2: they may"),
+            (
+                dense(true),
+                "leave less than 0.2: they overlap, or diameters are in another unit than the cell",
+            ),
+            (dense(false), "0.1000, and grains that rest on each other hardly leave less than 0.2: they"),
+            (Doubt::Near(5, [1, 2]), "5 pairs of grains lie nearer than a quarter of the smaller diameter"),
+            (Doubt::Hidden(4, 3), "4 grains lie inside others and take no part, the first of them grain 3"),
+        ] {
+            assert!(doubt(&note).contains(words), "{}", doubt(&note));
+        }
     }
 }

@@ -251,6 +251,7 @@ mod tests {
             let headline = if breaks { Headline::MeetsUnlessDispersive } else { Headline::Meets };
             assert_eq!(pair.headline, Some(headline));
             let line = practice_line(&pair.decision(), SizeUnit::Mm);
+            assert_eq!(line.starts_with(Headline::MeetsUnlessDispersive.words()), breaks, "{line}");
             assert_eq!(line.contains("dispersive base: limit 0.500\u{202f}mm"), breaks, "{line}");
         }
         let stated = judged(0.61, true);

@@ -317,7 +317,8 @@ mod tests {
     /// base.
     #[test]
     fn both_sides_of_a_band_keep_every_rule_of_retention_drainage_and_placing() {
-        let graded = [(0.002, 6.0), (0.02, 20.0), (0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (19.0, 100.0)];
+        let fines = [(0.002, 6.0), (0.02, 20.0), (0.075, 35.0)];
+        let graded = [&fines[..], &[(0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)]].concat();
         let sand = [(0.1, 0.0), (0.3, 15.0), (1.2, 85.0), (3.0, 100.0)];
         for points in [&DESIGN_CLAY[..], &CORE, &graded, &DESIGN_SAND, &sand] {
             let [fine, coarse] = specified(points).band.unwrap().continued();

@@ -42,50 +42,70 @@ pub const LEAST_CU: f64 = 2.0;
 /// Product with the limits of its standard.
 pub(super) struct Product {
     pub(super) name: &'static str,
-    /// Openings of its sieves (mm), ascending.
-    sieves_mm: &'static [f64],
-    /// Minimum percent finer at each sieve.
-    least: &'static [f64],
-    /// Maximum percent finer at each sieve.
-    most: &'static [f64],
+    /// Sieve (mm), minimum and maximum percent finer; ascending.
+    limits: &'static [(f64, f64, f64)],
     pub(super) source: &'static str,
 }
 
 pub(super) const PRODUCTS: [Product; 5] = [
     Product {
         name: "ASTM C33 fine aggregate",
-        sieves_mm: &[0.075, 0.15, 0.3, 0.6, 1.18, 2.36, 4.75, 9.5],
-        least: &[0.0, 0.0, 5.0, 25.0, 50.0, 80.0, 95.0, 100.0],
-        most: &[3.0, 10.0, 30.0, 60.0, 85.0, 100.0, 100.0, 100.0],
+        limits: &[
+            (0.075, 0.0, 3.0),
+            (0.15, 0.0, 10.0),
+            (0.3, 5.0, 30.0),
+            (0.6, 25.0, 60.0),
+            (1.18, 50.0, 85.0),
+            (2.36, 80.0, 100.0),
+            (4.75, 95.0, 100.0),
+            (9.5, 100.0, 100.0),
+        ],
         source: "ASTM C33, table 1: limits to be checked against the standard",
     },
     Product {
         name: "ASTM C33/D448 No. 8 stone",
-        sieves_mm: &[1.18, 2.36, 4.75, 9.5, 12.5],
-        least: &[0.0, 0.0, 10.0, 85.0, 100.0],
-        most: &[5.0, 10.0, 30.0, 100.0, 100.0],
+        limits: &[
+            (1.18, 0.0, 5.0),
+            (2.36, 0.0, 10.0),
+            (4.75, 10.0, 30.0),
+            (9.5, 85.0, 100.0),
+            (12.5, 100.0, 100.0),
+        ],
         source: "Colorado DOT, table 703-1, from AASHTO M 43",
     },
     Product {
         name: "ASTM C33/D448 No. 78 stone",
-        sieves_mm: &[1.18, 2.36, 4.75, 9.5, 12.5, 19.0],
-        least: &[0.0, 0.0, 5.0, 40.0, 90.0, 100.0],
-        most: &[5.0, 10.0, 25.0, 75.0, 100.0, 100.0],
+        limits: &[
+            (1.18, 0.0, 5.0),
+            (2.36, 0.0, 10.0),
+            (4.75, 5.0, 25.0),
+            (9.5, 40.0, 75.0),
+            (12.5, 90.0, 100.0),
+            (19.0, 100.0, 100.0),
+        ],
         source: "AASHTO M 43: limits to be checked against the standard",
     },
     Product {
         name: "ASTM C33/D448 No. 67 stone",
-        sieves_mm: &[2.36, 4.75, 9.5, 19.0, 25.0],
-        least: &[0.0, 0.0, 20.0, 90.0, 100.0],
-        most: &[5.0, 10.0, 55.0, 100.0, 100.0],
+        limits: &[
+            (2.36, 0.0, 5.0),
+            (4.75, 0.0, 10.0),
+            (9.5, 20.0, 55.0),
+            (19.0, 90.0, 100.0),
+            (25.0, 100.0, 100.0),
+        ],
         source: "Iowa DOT, Matls. IM 209, appendix D (April 2017), gradation No. 5 (67), which sets \
                  limits at these sieves and one of its own at 0.075 mm",
     },
     Product {
         name: "ASTM C33/D448 No. 57 stone",
-        sieves_mm: &[2.36, 4.75, 12.5, 25.0, 37.5],
-        least: &[0.0, 0.0, 25.0, 95.0, 100.0],
-        most: &[5.0, 10.0, 60.0, 100.0, 100.0],
+        limits: &[
+            (2.36, 0.0, 5.0),
+            (4.75, 0.0, 10.0),
+            (12.5, 25.0, 60.0),
+            (25.0, 95.0, 100.0),
+            (37.5, 100.0, 100.0),
+        ],
         source: "Iowa DOT, Matls. IM 209, appendix D (April 2017), gradation No. 3 (57), which sets \
                  limits at these sieves and one of its own at 0.075 mm",
     },
@@ -110,9 +130,9 @@ pub(super) fn size_at(side: &[[f64; 2]], percent: f64) -> f64 {
 impl Product {
     /// Fine and coarse side: size (mm) and percent finer.
     fn sides(&self) -> [Vec<[f64; 2]>; 2] {
-        let side =
-            |finer: &[f64]| self.sieves_mm.iter().zip(finer).map(|(mm, finer)| [*mm, *finer]).collect();
-        [side(self.most), side(self.least)]
+        let fine = self.limits.iter().map(|(mm, _, most)| [*mm, *most]);
+        let coarse = self.limits.iter().map(|(mm, least, _)| [*mm, *least]);
+        [fine.collect(), coarse.collect()]
     }
 
     /// D15 (mm) of the fine and the coarse side.
@@ -136,10 +156,10 @@ impl Product {
         let wide =
             from_5_to_60.filter(|percent| (5.0..=60.0).contains(percent)).map(ratio).fold(0.0, f64::max);
         not_kept.extend((wide > WIDEST_BAND).then_some(NotKept::Width { ratio: wide }));
-        let at_no_200 = self.sieves_mm.iter().rposition(|mm| *mm <= FINES_MM).unwrap_or(0);
-        let percent = self.most[at_no_200];
+        let at_no_200 = self.limits.iter().rposition(|(mm, ..)| *mm <= FINES_MM).unwrap_or(0);
+        let (_, _, percent) = self.limits[at_no_200];
         not_kept.extend((percent > MOST_FINES_PERCENT).then_some(NotKept::Fines { percent }));
-        let is_too_coarse = self.sieves_mm.last().is_some_and(|mm| *mm > GREATEST_SIZE_MM);
+        let is_too_coarse = self.limits.last().is_some_and(|(mm, ..)| *mm > GREATEST_SIZE_MM);
         not_kept.extend(is_too_coarse.then_some(NotKept::GreatestSize));
         not_kept
     }
@@ -152,11 +172,10 @@ mod tests {
     #[test]
     fn limits_rise_and_end_at_all() {
         for product in &PRODUCTS {
-            let Product { name, sieves_mm, least, most, .. } = product;
-            assert_eq!([sieves_mm.len(); 2], [least.len(), most.len()], "{name}");
-            assert!(sieves_mm.is_sorted_by(|a, b| a < b) && least.is_sorted() && most.is_sorted(), "{name}");
-            assert!(least.iter().zip(*most).all(|(least, most)| least <= most), "{name}");
-            assert_eq!(least.last(), Some(&100.0), "{name}");
+            let Product { name, limits, .. } = product;
+            assert!(limits.is_sorted_by(|a, b| a.0 < b.0 && a.1 <= b.1 && a.2 <= b.2), "{name}");
+            assert!(limits.iter().all(|(_, least, most)| least <= most), "{name}");
+            assert_eq!(limits.last().unwrap().1, 100.0, "{name}");
         }
     }
 

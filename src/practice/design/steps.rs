@@ -77,7 +77,11 @@ impl Findings<'_> {
 
     fn gradation(&self) -> SpecificationStep {
         let values = self.of_each_curve("D15B", "mm", |curve| curve.record.d15_mm);
-        step(StepName::Plot, "", values, vec![StepNote::Curves { curves: self.read.len() as u64 }], "")
+        SpecificationStep {
+            values,
+            notes: vec![StepNote::Curves { curves: self.read.len() as u64 }],
+            ..step(StepName::Plot)
+        }
     }
 
     fn gravel(&self) -> SpecificationStep {
@@ -91,7 +95,7 @@ impl Findings<'_> {
         };
         let notes = self.read.iter().map(gravel).collect();
         let source = format!("{REGRADING}. The check for a gap is this program's own");
-        step(StepName::FindGravel, "", values, notes, source)
+        SpecificationStep { values, notes, source, ..step(StepName::FindGravel) }
     }
 
     fn regrading(&self) -> SpecificationStep {
@@ -100,16 +104,25 @@ impl Findings<'_> {
         values.retain(|_| any);
         values.extend(self.of_each_curve("D85B", "mm", |curve| curve.record.d85_mm));
         let notes = if any { Vec::new() } else { vec![StepNote::NotRegraded] };
-        let formula = "percent finer / percent finer than the size on which it is regraded";
-        step(StepName::Regrade, formula, values, notes, REGRADING)
+        SpecificationStep {
+            formula: "percent finer / percent finer than the size on which it is regraded".into(),
+            values,
+            notes,
+            source: REGRADING.into(),
+            ..step(StepName::Regrade)
+        }
     }
 
     fn category(&self) -> SpecificationStep {
         let mut values =
             self.of_each_curve("fines A, finer than 0.075 mm", "%", |curve| curve.record.fines_percent);
         values.extend(self.of_each_curve("category", "", |curve| curve.record.category.map(f64::from)));
-        let formula = "1: A > 85 %; 2: A 40 to 85 %; 3: A 15 to 40 %; 4: A < 15 %";
-        step(StepName::Place, formula, values, Vec::new(), source_of(DESIGN))
+        SpecificationStep {
+            formula: "1: A > 85 %; 2: A 40 to 85 %; 3: A 15 to 40 %; 4: A < 15 %".into(),
+            values,
+            source: source_of(DESIGN),
+            ..step(StepName::Place)
+        }
     }
 
     fn retention(&self) -> SpecificationStep {
@@ -132,13 +145,13 @@ impl Findings<'_> {
         let not_known = needs.map(|needs| StepNote::LimitNotKnown { needs });
         let of_design = |limit| mm("maximum D15F by Sherard and Dunnigan's limit of design", Some(limit));
         let by_practice = mm("maximum D15F by practice", self.d15f_max);
-        step(
-            StepName::Retain,
-            joined(&|curve, rule| formula_of_base(rule, curve), "; "),
-            self.limit_of_design().map(of_design).into_iter().chain([by_practice]).collect(),
-            set_by.into_iter().chain(not_known).collect(),
-            joined(&|_, rule| rule.source.clone(), ". "),
-        )
+        SpecificationStep {
+            formula: joined(&|curve, rule| formula_of_base(rule, curve), "; "),
+            values: self.limit_of_design().map(of_design).into_iter().chain([by_practice]).collect(),
+            notes: set_by.into_iter().chain(not_known).collect(),
+            source: joined(&|_, rule| rule.source.clone(), ". "),
+            ..step(StepName::Retain)
+        }
     }
 
     /// Limit of design, if another rule is stricter.
@@ -160,8 +173,13 @@ impl Findings<'_> {
             _ if rule.is_some_and(|rule| rule.limit_at_most) => notes.push(StepNote::DrainageAtMost),
             _ => {}
         }
-        let [formula, source] = rule.map_or([""; 2], |rule| [rule.formula.as_str(), rule.source.as_str()]);
-        step(StepName::Drain, formula, vec![mm("minimum D15F", self.d15f_min())], notes, source)
+        SpecificationStep {
+            formula: rule.map_or_else(String::new, |rule| rule.formula.clone()),
+            values: vec![mm("minimum D15F", self.d15f_min())],
+            notes,
+            source: rule.map_or_else(String::new, |rule| rule.source.clone()),
+            ..step(StepName::Drain)
+        }
     }
 
     fn d15f_min(&self) -> Option<f64> {
@@ -187,7 +205,13 @@ impl Findings<'_> {
         };
         let formula =
             format!("maximum D15F / minimum D15F <= {WIDEST_BAND}; the {moved} where the ratio is larger");
-        step(StepName::Narrow, formula, values, notes, source_of("filter-band"))
+        SpecificationStep {
+            formula,
+            values,
+            notes,
+            source: source_of("filter-band"),
+            ..step(StepName::Narrow)
+        }
     }
 
     fn uniformity(&self) -> SpecificationStep {
@@ -200,7 +224,7 @@ impl Findings<'_> {
              D60F = maximum D60F / {WIDEST_BAND}"
         );
         let source = format!("{}. {}", source_of("filter-uniformity"), own_factor());
-        step(StepName::KeepUniform, formula, values, Vec::new(), source)
+        SpecificationStep { formula, values, source, ..step(StepName::KeepUniform) }
     }
 
     fn ends(&self) -> SpecificationStep {
@@ -212,7 +236,7 @@ impl Findings<'_> {
             mm("minimum D5F allowed", Some(FINES_MM)),
             mm("maximum D100F allowed", Some(GREATEST_SIZE_MM)),
         ];
-        step(StepName::LimitEnds, formula, values, Vec::new(), source_of("filter-fines"))
+        SpecificationStep { formula, values, source: source_of("filter-fines"), ..step(StepName::LimitEnds) }
     }
 
     fn segregation(&self) -> SpecificationStep {
@@ -220,7 +244,7 @@ impl Findings<'_> {
             format!("minimum D10F = the smaller of minimum D15F / {D15_OVER_D10} and D10F of the fine side");
         let values = vec![mm(ENTERED_BY, self.band.map(SizeBand::least_d10_mm)), mm("maximum D90F", None)];
         let source = format!("{SEGREGATION}. {}", own_factor());
-        step(StepName::KeepFromSegregating, formula, values, Vec::new(), source)
+        SpecificationStep { formula, values, source, ..step(StepName::KeepFromSegregating) }
     }
 
     fn sides(&self) -> SpecificationStep {
@@ -229,7 +253,7 @@ impl Findings<'_> {
             [one("minimum", size.min_mm), one("maximum", size.max_mm)]
         };
         let values = self.band.iter().flat_map(|band| &band.sizes).flat_map(both).collect();
-        step(StepName::Draw, "", values, Vec::new(), "a drawing of this program")
+        SpecificationStep { values, source: "a drawing of this program".into(), ..step(StepName::Draw) }
     }
 
     fn stability(&self) -> SpecificationStep {
@@ -249,8 +273,13 @@ impl Findings<'_> {
         let formula = format!(
             "D'15/d'85 <= {MOST_KEZDI} by Kézdi, H/F >= {LEAST_SHAPE} by Kenney and Lau, as of a filter"
         );
-        let (values, notes) = (sides.iter().flat_map(both).collect(), sides.iter().map(stability).collect());
-        step(StepName::CheckStability, formula, values, notes, source_of("kezdi"))
+        SpecificationStep {
+            formula,
+            values: sides.iter().flat_map(both).collect(),
+            notes: sides.iter().map(stability).collect(),
+            source: source_of("kezdi"),
+            ..step(StepName::CheckStability)
+        }
     }
 }
 
@@ -262,14 +291,10 @@ const SEGREGATION: &str = "FEMA (2011), cited by U.S. Army Corps of Engineers, F
 const REGRADING: &str = "U.S. Army Corps of Engineers, Filter Evaluation manual (RMC-CPD-2023-04), chapter \
                          Base Gradation, after Sherard and Dunnigan (1989)";
 
-fn step(
-    does: StepName,
-    formula: impl Into<String>,
-    values: Vec<StepValue>,
-    notes: Vec<StepNote>,
-    source: impl Into<String>,
-) -> SpecificationStep {
-    SpecificationStep { step: 0, does, formula: formula.into(), values, notes, source: source.into() }
+/// Step without content; [`Findings::steps`] numbers it.
+fn step(does: StepName) -> SpecificationStep {
+    let (formula, source) = (String::new(), String::new());
+    SpecificationStep { step: 0, does, formula, values: Vec::new(), notes: Vec::new(), source }
 }
 
 fn named(name: &str, value: Option<f64>, unit: &str) -> StepValue {
@@ -286,8 +311,8 @@ fn own_factor() -> String {
 }
 
 /// Source of the numbers of a rule.
-fn source_of(id: &str) -> &'static str {
-    RULES.iter().find(|rule| rule.id == id).map_or("", |rule| rule.source)
+fn source_of(id: &str) -> String {
+    RULES.iter().find(|rule| rule.id == id).map_or("", |rule| rule.source).into()
 }
 
 /// Arbitrary D15F (mm) of the filter for which the rules are read: their limits do not depend on it.

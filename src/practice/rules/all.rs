@@ -1,6 +1,6 @@
 //! The table of rules.
 
-use super::rule::{FilterRule, Judged, Pairing};
+use super::rule::{FilterRule, Judged, Pairing, RuleInputs};
 use super::{drainage, retention, stability};
 use crate::{RuleQuantity, RuleRole, RuleUnit};
 use voidwalk_core::gradation::Gradation;
@@ -42,43 +42,48 @@ const INTERNAL_STABILITY: &str = "U.S. Army Corps of Engineers, Internal Instabi
 const OURS: &str = "a check of this program, as specifications of filters commonly have it; no text that can \
                     be cited was read for its number";
 
-/// Rule with a maximum D15F for every pair of curves, of no author; the table replaces what differs.
-const PAIR: FilterRule = FilterRule {
-    id: "",
-    authority: "",
-    stated_by: &[],
-    says: "",
-    role: RuleRole::Retention,
-    applies_to: "",
-    quantity: &RuleQuantity::D15F,
-    formula: "",
-    at_least: false,
-    unit: RuleUnit::Mm,
-    source: "",
-    pairing: Pairing::EachPair,
-    judge: |_| Judged::left_out(),
-};
+type Judge = fn(&RuleInputs) -> Judged;
 
-/// Check of this program on every curve of the filter.
-const FILTER: FilterRule = FilterRule {
-    role: RuleRole::Placing,
-    unit: RuleUnit::One,
-    source: OURS,
-    pairing: Pairing::EachFilter,
-    ..PAIR
-};
+/// Rule with a maximum D15F for every pair of curves, of no author; the table replaces what differs. Every
+/// rule states how it judges and its source.
+const fn pair(judge: Judge, source: &'static str) -> FilterRule {
+    FilterRule {
+        id: "",
+        authority: "",
+        stated_by: &[],
+        says: "",
+        role: RuleRole::Retention,
+        applies_to: "",
+        quantity: &RuleQuantity::D15F,
+        formula: "",
+        at_least: false,
+        unit: RuleUnit::Mm,
+        source,
+        pairing: Pairing::EachPair,
+        judge,
+    }
+}
+
+/// Rule on every curve of the filter.
+const fn filter(judge: Judge, source: &'static str) -> FilterRule {
+    let (role, unit, pairing) = (RuleRole::Placing, RuleUnit::One, Pairing::EachFilter);
+    FilterRule { role, unit, pairing, ..pair(judge, source) }
+}
 
 /// Rule of the filter's internal stability.
-const STABILITY: FilterRule = FilterRule {
-    stated_by: &["USACE"],
-    says: "internal stability of the filter",
-    role: RuleRole::Stability,
-    source: INTERNAL_STABILITY,
-    ..FILTER
-};
+const fn stable(judge: Judge, source: &'static str) -> FilterRule {
+    FilterRule {
+        stated_by: &["USACE"],
+        says: "internal stability of the filter",
+        role: RuleRole::Stability,
+        ..filter(judge, source)
+    }
+}
 
 /// Comparison of the walk with tests, or of a pair with the walks of the paper.
-const WALK: FilterRule = FilterRule { role: RuleRole::Walk, unit: RuleUnit::One, ..PAIR };
+const fn walk(judge: Judge, source: &'static str) -> FilterRule {
+    FilterRule { role: RuleRole::Walk, unit: RuleUnit::One, ..pair(judge, source) }
+}
 
 /// All rules, in reading order.
 pub const RULES: &[FilterRule] = &[
@@ -92,12 +97,13 @@ pub const RULES: &[FilterRule] = &[
         formula: "A > 85 %: 9 D85B, not less than 0.2 mm; A 40 to 85 %: 0.7 mm; A 15 to 40 %: (40 - A)/25 \
                   (4 D85B - 0.7) + 0.7 mm; A < 15 %: 4 D85B; dispersive: A > 85 %: 6.4 D85B, not less than \
                   0.2 mm; 40 to 85 %: 0.5 mm",
-        source: "Sherard & Dunnigan (1989), as given by Fell et al., Geotechnical Engineering of Dams, Table \
-                 9.2, with its note (b) on dispersive soils; the 0.2 mm: Sherard et al. (1984), as given by \
-                 Messerklinger, 18th International Conference on Soil Mechanics and Geotechnical Engineering \
-                 (2013), p. 3315",
-        judge: retention::sherard_dunnigan,
-        ..PAIR
+        ..pair(
+            retention::sherard_dunnigan,
+            "Sherard & Dunnigan (1989), as given by Fell et al., Geotechnical Engineering of Dams, Table \
+             9.2, with its note (b) on dispersive soils; the 0.2 mm: Sherard et al. (1984), as given by \
+             Messerklinger, 18th International Conference on Soil Mechanics and Geotechnical Engineering \
+             (2013), p. 3315",
+        )
     },
     FilterRule {
         id: TESTS_NO_EROSION,
@@ -106,9 +112,7 @@ pub const RULES: &[FilterRule] = &[
         applies_to: "filters of existing dams: a criterion proposed from tests, without a margin of safety",
         formula: "A > 85 %: 9 D85B; A 35 to 85 %: 0.7 mm; A 15 to 35 %: 1.6 ((35 - A)/20 (4 D85B - 0.7) + \
                   0.7 mm); A < 15 %: 7 D85B; dispersive: A > 85 %: 6.4 D85B; 35 to 85 %: 0.5 mm",
-        source: FELL,
-        judge: retention::no_erosion,
-        ..PAIR
+        ..pair(retention::no_erosion, FELL)
     },
     FilterRule {
         id: TESTS_CONTINUING,
@@ -119,11 +123,12 @@ pub const RULES: &[FilterRule] = &[
         applies_to: "existing dams with filters coarser than modern rules allow; D95B after regrading; not \
                      bases with 15 to 85 % fines and a D95B above 2 mm",
         formula: "9 D95B",
-        source: "Foster & Fell (2001), as given by Fell et al., Geotechnical Engineering of Dams, section \
-                 9.3.2; regraded base: U.S. Army Corps of Engineers, Filter Evaluation manual \
-                 (RMC-CPD-2023-04), chapter Foster and Fell",
-        judge: retention::continuing,
-        ..PAIR
+        ..pair(
+            retention::continuing,
+            "Foster & Fell (2001), as given by Fell et al., Geotechnical Engineering of Dams, section \
+             9.3.2; regraded base: U.S. Army Corps of Engineers, Filter Evaluation manual \
+             (RMC-CPD-2023-04), chapter Foster and Fell",
+        )
     },
     FilterRule {
         id: TERZAGHI,
@@ -133,9 +138,7 @@ pub const RULES: &[FilterRule] = &[
         quantity: &RuleQuantity::D15FOverD85B,
         formula: "4",
         unit: RuleUnit::One,
-        source: "Terzaghi, as stated by Shire & O'Sullivan, section 2",
-        judge: retention::terzaghi,
-        ..PAIR
+        ..pair(retention::terzaghi, "Terzaghi, as stated by Shire & O'Sullivan, section 2")
     },
     FilterRule {
         id: CONSTRICTED_EXIT,
@@ -147,10 +150,11 @@ pub const RULES: &[FilterRule] = &[
         formula: "from JOS/D95B after regrading: below 0.4: 0; 0.5: 0.01 %; 0.75: 0.1 %; 1: 10 %; 2: 50 %; \
                   3 and more: 90 %; between them straight on the scale of a normal variate",
         unit: RuleUnit::Percent,
-        source: "U.S. Army Corps of Engineers, Filter Evaluation manual (RMC-CPD-2023-04), chapter \
-                 Constricted Exit, after Fell and Foster",
-        judge: retention::constricted,
-        ..PAIR
+        ..pair(
+            retention::constricted,
+            "U.S. Army Corps of Engineers, Filter Evaluation manual (RMC-CPD-2023-04), chapter \
+             Constricted Exit, after Fell and Foster",
+        )
     },
     FilterRule {
         id: PERMEABILITY,
@@ -160,10 +164,11 @@ pub const RULES: &[FilterRule] = &[
         applies_to: "design of filters; D15B before regrading",
         formula: "5 D15B by USBR (2011) and NRCS (2017), and not less than 0.1 mm",
         at_least: true,
-        source: "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
-                 USBR (2011) and NRCS (2017)",
-        judge: |inputs| drainage::permeability(inputs, 5.0),
-        ..PAIR
+        ..pair(
+            |inputs| drainage::permeability(inputs, 5.0),
+            "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
+             USBR (2011) and NRCS (2017)",
+        )
     },
     FilterRule {
         id: PERMEABILITY_LEAST,
@@ -173,10 +178,11 @@ pub const RULES: &[FilterRule] = &[
         applies_to: "filters of which this older manual is asked; D15B before regrading",
         formula: "3 D15B, the least of the 3 to 5 D15B of EM 1110-2-1901, and not less than 0.1 mm",
         at_least: true,
-        source: "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
-                 EM 1110-2-1901 (2005)",
-        judge: |inputs| drainage::permeability(inputs, 3.0),
-        ..PAIR
+        ..pair(
+            |inputs| drainage::permeability(inputs, 3.0),
+            "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
+             EM 1110-2-1901 (2005)",
+        )
     },
     FilterRule {
         id: FILTER_FINES,
@@ -186,8 +192,7 @@ pub const RULES: &[FilterRule] = &[
         quantity: &RuleQuantity::named("finer than 0.075 mm"),
         formula: "5 %",
         unit: RuleUnit::Percent,
-        judge: drainage::fines,
-        ..FILTER
+        ..filter(drainage::fines, OURS)
     },
     FilterRule {
         id: FILTER_GREATEST_SIZE,
@@ -196,8 +201,7 @@ pub const RULES: &[FilterRule] = &[
         quantity: &RuleQuantity::named("D100F"),
         formula: "75 mm",
         unit: RuleUnit::Mm,
-        judge: drainage::greatest_size,
-        ..FILTER
+        ..filter(drainage::greatest_size, OURS)
     },
     FilterRule {
         id: "filter-uniformity",
@@ -205,8 +209,7 @@ pub const RULES: &[FilterRule] = &[
         applies_to: "design of filters: both sides of the band; wider curves leave room for gap-graded ones",
         quantity: &RuleQuantity::named("Cu of the filter"),
         formula: "6",
-        judge: drainage::uniformity,
-        ..FILTER
+        ..filter(drainage::uniformity, OURS)
     },
     FilterRule {
         id: "filter-band",
@@ -215,8 +218,7 @@ pub const RULES: &[FilterRule] = &[
         quantity: &RuleQuantity::named("size of the coarse side / of the fine side"),
         formula: "5, from 5 to 60 % finer",
         pairing: Pairing::AllFilters,
-        judge: drainage::band,
-        ..FILTER
+        ..filter(drainage::band, OURS)
     },
     FilterRule {
         id: KEZDI,
@@ -224,8 +226,7 @@ pub const RULES: &[FilterRule] = &[
         applies_to: "the filter alone: internal stability",
         quantity: &RuleQuantity::named("D'15/d'85, split at 17.6 to 64.7 %"),
         formula: "4",
-        judge: stability::kezdi,
-        ..STABILITY
+        ..stable(stability::kezdi, INTERNAL_STABILITY)
     },
     FilterRule {
         id: KENNEY_LAU,
@@ -234,8 +235,7 @@ pub const RULES: &[FilterRule] = &[
         quantity: &RuleQuantity::named("least H/F of the filter"),
         formula: "1",
         at_least: true,
-        judge: |inputs| stability::shape(inputs, Gradation::kenney_lau),
-        ..STABILITY
+        ..stable(|inputs| stability::shape(inputs, Gradation::kenney_lau), INTERNAL_STABILITY)
     },
     FilterRule {
         id: LI_FANNIN,
@@ -244,8 +244,7 @@ pub const RULES: &[FilterRule] = &[
         quantity: &RuleQuantity::named("least H/min(F, 15 %) of the filter"),
         formula: "1",
         at_least: true,
-        judge: |inputs| stability::shape(inputs, Gradation::li_fannin),
-        ..STABILITY
+        ..stable(|inputs| stability::shape(inputs, Gradation::li_fannin), INTERNAL_STABILITY)
     },
     FilterRule {
         id: "burenkova",
@@ -255,10 +254,11 @@ pub const RULES: &[FilterRule] = &[
         quantity: &RuleQuantity::named("h' = D90/D60 of the filter"),
         formula: "0.76 lg h'' + 1, with h'' = D90/D15, and less than 1.86 lg h'' + 1",
         at_least: true,
-        source: "U.S. Army Corps of Engineers, Internal Instability Toolbox manual (RMC-CPD-2023-10), \
-                 chapter Burenkova Method",
-        judge: stability::burenkova,
-        ..STABILITY
+        ..stable(
+            stability::burenkova,
+            "U.S. Army Corps of Engineers, Internal Instability Toolbox manual (RMC-CPD-2023-10), \
+             chapter Burenkova Method",
+        )
     },
     FilterRule {
         id: "wan-fell",
@@ -268,10 +268,11 @@ pub const RULES: &[FilterRule] = &[
         quantity: &RuleQuantity::named("probability"),
         formula: "none stated: 1 / (1 + exp(-Z)), Z from h' and h'' of Burenkova",
         unit: RuleUnit::Percent,
-        source: "U.S. Army Corps of Engineers, Internal Instability Toolbox manual (RMC-CPD-2023-10), \
-                 chapter Modified Burenkova Method",
-        judge: stability::wan_fell,
-        ..STABILITY
+        ..stable(
+            stability::wan_fell,
+            "U.S. Army Corps of Engineers, Internal Instability Toolbox manual (RMC-CPD-2023-10), \
+             chapter Modified Burenkova Method",
+        )
     },
     FilterRule {
         id: "kenney-controlling",
@@ -280,9 +281,7 @@ pub const RULES: &[FilterRule] = &[
         applies_to: "bases without cohesion; Dc* is the largest particle eroded in the first run",
         quantity: &RuleQuantity::named("largest eroded / D15F"),
         formula: "1/5",
-        source: "Kenney et al., as stated by Shire & O'Sullivan, section 2",
-        judge: retention::largest_passing,
-        ..WALK
+        ..walk(retention::largest_passing, "Kenney et al., as stated by Shire & O'Sullivan, section 2")
     },
     FilterRule {
         id: "paper-no-erosion",
@@ -290,9 +289,7 @@ pub const RULES: &[FilterRule] = &[
         applies_to: "loose filters of Cu 1.5 and 3",
         quantity: &RuleQuantity::D15FOverD85B,
         formula: "5",
-        source: "Shire & O'Sullivan, section 6, Fig. 14(a)",
-        judge: |inputs| retention::paper(inputs, 85.0, 5.0),
-        ..WALK
+        ..walk(|inputs| retention::paper(inputs, 85.0, 5.0), "Shire & O'Sullivan, section 6, Fig. 14(a)")
     },
     FilterRule {
         id: "paper-continuing",
@@ -300,8 +297,6 @@ pub const RULES: &[FilterRule] = &[
         applies_to: "filters of Cu 1.5 and 3",
         quantity: &RuleQuantity::D15FOverD95B,
         formula: "4.7",
-        source: "Shire & O'Sullivan, section 6, Fig. 15",
-        judge: |inputs| retention::paper(inputs, 95.0, 4.7),
-        ..WALK
+        ..walk(|inputs| retention::paper(inputs, 95.0, 4.7), "Shire & O'Sullivan, section 6, Fig. 15")
     },
 ];

@@ -2,8 +2,9 @@
 //! at the finer or at the coarser one, in every combination.
 //!
 //! Up to [`WIDE_STEP`] the worst of these results counts. Beyond it, a rule whose answer depends on the
-//! step has no result; for a rule of the filter's shape this holds on any such step. Internal stability
-//! reads a straight line where next to nothing passes: sieves of ASTM D448 stones are far apart there.
+//! step has no result. A rule of the filter's shape has no result on any such step, since the mass that
+//! the filter loses is not known. Internal stability reads a straight line where next to nothing passes,
+//! because sieves of ASTM D448 stones are that far apart there.
 //!
 //! [`WIDE_STEP`]: voidwalk_core::gradation::WIDE_STEP
 

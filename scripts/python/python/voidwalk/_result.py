@@ -35,8 +35,11 @@ Figure = Literal["progress", "layers", "curves", "rules"]
 #: The names of its tables.
 TableName = Literal["series", "layers", "retained", "eroded", "flow", "retained_by_void", "blockings"]
 
-#: The tables of a result.
-_TABLES = ("series", "layers", "retained", "eroded", "flow", "retained_by_void", "blockings")
+#: The tables of a result, and their files.
+_TABLES = {
+    **{name: f"{name}.csv" for name in ("series", "layers", "retained", "eroded", "flow", "retained_by_void")},
+    "blockings": "blocked.csv",
+}
 
 
 class _Walked:
@@ -415,6 +418,5 @@ def read_csv(path: Path) -> Table:
 def read_run(folder: Path) -> Result:
     """The result of a run folder."""
     outcome = json.loads((folder / "outcome.json").read_text(encoding="utf-8"))
-    files = {name: folder / f"{'blocked' if name == 'blockings' else name}.csv" for name in _TABLES}
-    tables = {name: read_csv(file) for name, file in files.items() if file.exists()}
+    tables = {name: read_csv(folder / file) for name, file in _TABLES.items() if (folder / file).exists()}
     return Result(outcome, tables, folder=folder)
