@@ -75,8 +75,8 @@ def page(folder):
 
 def a_small_reproduction(folder):
     small = "replicates = 2\nnetwork.nx = 6\nnetwork.ny = 6\nnetwork.nz = 8"
-    texts = {plan: (ROOT / f"scripts/campaigns/{plan}.toml").read_text(encoding="utf-8") for plan in ("paper", "kenney", "table3", "progress")}
-    for plan, text in (texts | {"paper-capped": plans.plan("paper-capped")}).items():
+    texts = {plan: (ROOT / f"scripts/campaigns/{plan}.toml").read_text(encoding="utf-8") for plan in ("paper", "kenney", "progress")}
+    for plan, text in (texts | {made: plans.plan(made) for made in ("table3", "paper-capped")}).items():
         # Of Kenney's bases, those with one or two digits are enough.
         text = re.sub(r'^"0\.\d{3}" .*\n', "", text, flags=re.M)
         (folder / f"{plan}.toml").write_text(text.replace("replicates = 10", small), encoding="utf-8")
