@@ -42,16 +42,12 @@ fn value(number: impl Serialize) -> serde_json::Value {
     serde_json::to_value(number).expect("numbers and words")
 }
 
-/// Name in a file of a variant with this name.
-fn snake_case(variant: &str) -> String {
-    let mut name = String::new();
-    for letter in variant.chars() {
-        if letter.is_uppercase() && !name.is_empty() {
-            name.push('_');
-        }
-        name.extend(letter.to_lowercase());
-    }
-    name
+/// Letters of the name in a file of a variant with this name.
+fn snake_case(variant: &str) -> impl Iterator<Item = char> {
+    variant.char_indices().flat_map(|(place, letter)| {
+        let before = (place > 0 && letter.is_ascii_uppercase()).then_some('_');
+        before.into_iter().chain([letter.to_ascii_lowercase()])
+    })
 }
 
 macro_rules! notes {
@@ -108,7 +104,7 @@ macro_rules! notes {
             /// Name of the note in a file.
             pub fn id(&self) -> String {
                 match self {
-                    $(Self::$name { .. } => snake_case(stringify!($name)),)*
+                    $(Self::$name { .. } => snake_case(stringify!($name)).collect(),)*
                 }
             }
 
@@ -134,7 +130,7 @@ macro_rules! notes {
             type Error = String;
 
             fn try_from(mut record: Record) -> Result<Self, String> {
-                $(if record.id == snake_case(stringify!($name)) {
+                $(if record.id.chars().eq(snake_case(stringify!($name))) {
                     return Ok(Self::$name { $($number: record.take(stringify!($number))?),* });
                 })*
                 Err(format!("unknown note {:?}", record.id))
