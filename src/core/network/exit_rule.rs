@@ -107,21 +107,3 @@ pub(super) fn hash_column<T: Copy, const N: usize>(
     hash.update(&(column.len() as u64).to_le_bytes());
     column.iter().for_each(|&number| hash.update(&bytes(number)));
 }
-
-/// First entry of each void with one extra entry at the end, and the place of each row among all, sorted by
-/// their voids.
-pub(super) fn in_order_of_voids(
-    voids: usize,
-    rows: impl Iterator<Item = u32> + Clone,
-) -> (Vec<u32>, Vec<u32>) {
-    let mut begin = vec![0u32; voids + 1];
-    rows.clone().for_each(|void| begin[void as usize + 1] += 1);
-    (0..voids).for_each(|void| begin[void + 1] += begin[void]);
-    let mut next = begin.clone();
-    let place = |void: u32| {
-        next[void as usize] += 1;
-        next[void as usize] - 1
-    };
-    let places = rows.map(place).collect();
-    (begin, places)
-}

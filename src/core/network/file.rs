@@ -5,7 +5,7 @@
 //! gaps. The exits of a void keep the order of their rows. Lines that begin with `#` are comments; `#
 //! shape = nx, ny, nz` marks the cubic lattice, whose exits must be the +x, +y, +z exits of that lattice.
 
-use super::exit_rule::in_order_of_voids;
+use super::in_order_of_voids;
 use super::{END, Network};
 use std::io::Write;
 

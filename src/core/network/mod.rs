@@ -28,6 +28,7 @@ pub use arrays::ArrayOptions;
 pub use columns::NO_EXIT;
 pub use columns::{CONDUCTANCE_EXPONENT, NetworkColumns};
 pub use connectivity::Connectivity;
+
 #[cfg(test)]
 use connectivity::TABLE_3;
 pub use cubic::percolation_threshold;
@@ -186,4 +187,19 @@ impl Network {
         }
         finest
     }
+}
+
+/// First entry of each void with one extra entry at the end, and the place of each row among all, sorted by
+/// their voids.
+fn in_order_of_voids(voids: usize, rows: impl Iterator<Item = u32> + Clone) -> (Vec<u32>, Vec<u32>) {
+    let mut begin = vec![0u32; voids + 1];
+    rows.clone().for_each(|void| begin[void as usize + 1] += 1);
+    (0..voids).for_each(|void| begin[void + 1] += begin[void]);
+    let mut next = begin.clone();
+    let place = |void: u32| {
+        next[void as usize] += 1;
+        next[void as usize] - 1
+    };
+    let places = rows.map(place).collect();
+    (begin, places)
 }

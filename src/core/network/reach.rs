@@ -1,6 +1,6 @@
 //! Reach of paths through open constrictions: the backbone, and the blocked set of one size.
 
-use super::exit_rule::in_order_of_voids;
+use super::in_order_of_voids;
 use super::{END, NO_LAYER, Network, WIDE};
 
 impl Network {

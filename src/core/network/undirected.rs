@@ -4,8 +4,9 @@
 //! both. An *inlet* leads from the reservoir, a void of its own with the last number and the only start node,
 //! into a void; an *outlet* leaves the filter.
 
-use super::exit_rule::{NO_TWIN, Undirected, in_order_of_voids};
+use super::exit_rule::{NO_TWIN, Undirected};
 use super::file::unlinked;
+use super::in_order_of_voids;
 use super::{END, ExitRule, Network, NetworkError};
 
 /// Default flow tolerance of a walk.
