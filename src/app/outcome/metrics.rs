@@ -29,6 +29,8 @@ pub struct RunMetrics {
     pub run: Run,
     /// True if less than 7.5 % of the mass eroded.
     pub(crate) below_threshold: bool,
+    /// Rows of `layers.csv`.
+    pub(crate) layers: Vec<LayerRow>,
 }
 
 /// Rows of one run in the CSV files.
@@ -144,7 +146,7 @@ impl RunMetrics {
             by_connectivity: of_run(network, state),
             seconds,
         };
-        Self { run, below_threshold }
+        Self { run, below_threshold, layers }
     }
 }
 
@@ -154,6 +156,7 @@ impl Recorded {
         state: &State,
         flow: Option<&FlowRecord>,
         recorder: &Recorder,
+        layers: Vec<LayerRow>,
         id: RunId,
     ) -> Self {
         let series = recorder.series.iter().map(|(increment, tally)| SeriesRow {
@@ -178,7 +181,7 @@ impl Recorded {
         });
         let mut recorded = Self {
             series: series.collect(),
-            layers: layers(network, state, id),
+            layers,
             flow: flow.collect(),
             // Without recorded voids the blocked constrictions were not requested.
             blocked: if recorder.voids.is_empty() { Vec::new() } else { recorder::blocked(network, state) },

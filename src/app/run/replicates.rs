@@ -202,7 +202,14 @@ pub(super) fn walk_replicate(
         let metrics = RunMetrics::new(&end, &state, flow.as_ref(), run_id, begun.elapsed().as_secs_f64());
         let recorder = std::mem::take(&mut done.recorder);
         if part == 0 {
-            done.recorded.append(Recorded::new(&end, &state, flow.as_ref(), &recorder, run_id));
+            done.recorded.append(Recorded::new(
+                &end,
+                &state,
+                flow.as_ref(),
+                &recorder,
+                metrics.layers,
+                run_id,
+            ));
         }
         context.tell(Event::RunDone);
         tell_walked(id, &metrics.run, metrics.below_threshold, context);
