@@ -13,7 +13,8 @@ environment=target/python
 packages=("maturin>=1.9,<2" numpy pytest pytest-timeout pytest-xdist mypy pandas pandas-stubs xarray scipy tqdm openpnm matplotlib
     jsonschema)
 [ -z "${ALL:-}" ] || packages+=(porespy)
-$environment/bin/pip install --quiet --disable-pip-version-check "${packages[@]}"
+# Compiled when they are imported: most of their files are not.
+$environment/bin/pip install --no-compile --quiet --disable-pip-version-check "${packages[@]}"
 [ "${1:-}" != --environment ] || exit 0
 
 step() { printf '%4d s  %s\n' "$SECONDS" "$1"; }

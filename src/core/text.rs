@@ -48,11 +48,16 @@ pub fn is_hidden(character: char) -> bool {
 /// 1.0.
 pub fn visible(character: char) -> char {
     match character {
-        '\t' | '\n' => character,
+        ' '..='~' | '\t' | '\n' => character,
         '\u{fffe}' | '\u{ffff}' => '\u{fffd}',
         c if is_hidden(c) => '\u{fffd}',
         c => c,
     }
+}
+
+/// Returns a text whose characters are all [`visible`].
+pub fn all_visible(text: &str) -> String {
+    text.chars().map(visible).collect()
 }
 
 /// Puts a text on one line, with U+FFFD for each hidden character.

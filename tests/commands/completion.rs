@@ -71,7 +71,7 @@ fn hostile(n: usize) -> String {
     format!("n{n:03}{name}").replace("TOUCH", &format!("touch ran-{n:03}"))
 }
 
-const SOILS: usize = 240;
+const SOILS: usize = 80;
 const OF_SHEET: usize = 40;
 
 /// The beginning of what names soil `n`.
@@ -251,7 +251,7 @@ const BASH: [&str; 3] = [
 #[test]
 fn bash_runs_nothing_of_a_name() {
     let [shell, start, setup] = BASH;
-    check(shell, start, setup, 20);
+    check(shell, start, setup, 10);
 }
 
 #[test]

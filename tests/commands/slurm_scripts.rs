@@ -18,7 +18,7 @@ const PLAN: &str = "title = \"twelve\"\nseed = 5\n[set]\nreplicates = 2\n\
     \"`touch hacked` & >hacked\" = { \"filter.curve\" = \"shire2016-cu1.5-dense\" }\n";
 
 /// Two replicates that take seconds each: a task can be stopped in them three times on a fast machine, too.
-const LONG: &str = "[[case]]\nname = \"long\"\n[case.set]\nreplicates = 2\nnetwork = { nx = 48, ny = 48, nz = 200 }\n\
+const LONG: &str = "[[case]]\nname = \"long\"\n[case.set]\nreplicates = 2\nnetwork = { nx = 24, ny = 24, nz = 200 }\n\
     record = { sensitivity = [], series_every = 0, size_curves = [] }\n";
 
 struct Place {

@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Output};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use disk::{Noted, VARIABLE};
 use power::{Model, Unsynced};
@@ -36,13 +37,22 @@ fn main() -> ExitCode {
         ("a_power_cut_at_any_sync_loses_nothing_that_was_synced", power_cuts),
     ];
     let wanted: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
-    for (name, test) in tests {
-        if wanted.is_empty() || wanted.iter().any(|word| name.contains(word.as_str())) {
-            println!("test {name} ...");
-            test();
-            println!("test {name} ... ok");
+    let is_wanted = |name: &str| wanted.is_empty() || wanted.iter().any(|word| name.contains(word.as_str()));
+    // Two at a time: their work has one thread and waits for the disk.
+    let next = AtomicUsize::new(0);
+    let take = || tests.get(next.fetch_add(1, Ordering::Relaxed));
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                while let Some((name, test)) = take() {
+                    if is_wanted(name) {
+                        test();
+                        println!("test {name} ... ok");
+                    }
+                }
+            });
         }
-    }
+    });
     ExitCode::SUCCESS
 }
 

@@ -128,7 +128,7 @@ fn scenes() {
 
 #[test]
 fn sieve_tables() {
-    check("sieve", &["tests/bad/sieve"], 40_000, readers::sieve);
+    check("sieve", &["tests/bad/sieve"], 10_000, readers::sieve);
 }
 
 #[test]

@@ -89,8 +89,8 @@ def test_the_examples_are_typed_strictly(tmp_path: Path) -> None:
     guide = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
     assert len(guide) > 2
     (tmp_path / "guide.py").write_text("".join(guide), encoding="utf-8")
-    for example in [tmp_path / "guide.py", *sorted((ROOT / "scripts" / "examples").glob("*.py"))]:
-        held_by_mypy(tmp_path, "mypy", "--strict", str(example))
+    examples = [tmp_path / "guide.py", *sorted((ROOT / "scripts" / "examples").glob("*.py"))]
+    held_by_mypy(tmp_path, "mypy", "--strict", *map(str, examples))
 
 
 def test_what_the_readme_shows_runs_without_a_warning() -> None:

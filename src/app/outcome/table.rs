@@ -9,7 +9,7 @@ use super::record::{Statistic, Verdict};
 use super::statistic::percent_interval;
 use serde::Serialize;
 use std::fmt::{self, Display, Formatter};
-use voidwalk_core::text::visible;
+use voidwalk_core::text::all_visible;
 use voidwalk_practice::quantity::{Quantity, percent, significant, whole};
 
 /// Reason why writing to memory cannot fail.
@@ -27,7 +27,7 @@ pub(crate) fn csv_of<T: Serialize + Default>(rows: &[T]) -> Vec<u8> {
 /// Returns a table whose names hold no hidden characters.
 fn written(writer: csv::Writer<Vec<u8>>) -> Vec<u8> {
     let text = String::from_utf8(writer.into_inner().expect(WRITTEN)).expect(WRITTEN);
-    text.chars().map(visible).collect::<String>().into_bytes()
+    all_visible(&text).into_bytes()
 }
 
 pub(crate) struct Columns<'a, T>(Vec<Column<'a, T>>);

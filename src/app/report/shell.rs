@@ -6,7 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::figures::{Figure, Size, shorten};
 use crate::outcome::record::ModelLimit;
 use crate::words::left_out::model_limit;
-use voidwalk_core::text::visible;
+use voidwalk_core::text::all_visible;
 use voidwalk_practice::SheetCover;
 
 const STYLE: &str = include_str!("page.css");
@@ -94,7 +94,7 @@ fn with_contents(main: &str) -> String {
 
 /// Text from outside without non-text characters; maud escapes the markup in it.
 pub(crate) fn clean(text: &str) -> String {
-    text.chars().map(visible).collect()
+    all_visible(text)
 }
 
 /// Cleaned sentence with no line break between a number and its unit.

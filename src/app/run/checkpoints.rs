@@ -107,7 +107,7 @@ pub(crate) struct Checkpoints {
 #[derive(Default)]
 struct Shared {
     /// Finished replicates that are not on disk yet, by name.
-    waiting: BTreeMap<String, (Label, Vec<u8>)>,
+    waiting: BTreeMap<String, (Label, Done)>,
     generations: BTreeMap<String, u64>,
     passed_over: Vec<String>,
 }
@@ -193,17 +193,17 @@ impl Checkpoints {
     }
 
     /// Accepts a finished replicate, which is written with the next checkpoint of any replicate.
-    pub(crate) fn save_finished(&self, walk: WalkId, done: &Done) {
-        let text = serde_json::to_vec(done).expect("figures are numbers and words");
+    pub(crate) fn save_finished(&self, walk: WalkId, done: Done) {
         let label = self.next_label(walk);
-        self.shared().waiting.insert(walk.name(), (label, text));
+        self.shared().waiting.insert(walk.name(), (label, done));
     }
 
     /// Writes the finished replicates that are not on disk yet.
     pub(crate) fn flush(&self) -> Result<(), StoreError> {
         let waiting = std::mem::take(&mut self.shared().waiting);
-        for (name, (label, text)) in &waiting {
-            save(&self.folder, name, label, &[Section::new("done", text)])?;
+        for (name, (label, done)) in &waiting {
+            let text = serde_json::to_vec(done).expect("figures are numbers and words");
+            save(&self.folder, name, label, &[Section::new("done", &text)])?;
         }
         Ok(())
     }

@@ -217,7 +217,7 @@ pub(super) fn walk_replicate(
         done.runs.push(metrics.run);
         done.complete = run == case.scene.walk.runs;
         if let (true, Some(checkpoints)) = (done.complete, context.checkpoints) {
-            checkpoints.save_finished(id, &done);
+            checkpoints.save_finished(id, done.clone());
         }
         // The next run begins with the open constrictions of this run.
         (clogged, exits) = (state.into_clogged(), left.map(Cow::Owned));

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use voidwalk_core::text::visible;
+use voidwalk_core::text::all_visible;
 
 const HEAD: usize = 16 << 10;
 
@@ -113,7 +113,7 @@ impl Answer {
 
 fn show(value: &mut Value) {
     match value {
-        Value::String(text) => *text = text.chars().map(visible).collect(),
+        Value::String(text) => *text = all_visible(text),
         Value::Array(values) => values.iter_mut().for_each(show),
         Value::Object(fields) => fields.values_mut().for_each(show),
         _ => {}

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use serde::Serialize;
 
 use voidwalk_core::store::{is_device, make_folder, write_whole};
-use voidwalk_core::text::{is_hidden, plain, visible};
+use voidwalk_core::text::{all_visible, is_hidden, plain};
 use voidwalk_sheets::{SoilSummary, soils_in_file};
 
 const FOLDER: &str = "sheets";
@@ -154,7 +154,7 @@ impl Sheets {
             let end = at + folder.len() + digits + usize::from(rest[digits..].starts_with('/'));
             text.replace_range(at..end, "");
         }
-        text.chars().map(visible).collect()
+        all_visible(&text)
     }
 }
 

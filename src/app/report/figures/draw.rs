@@ -76,7 +76,7 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
     svg.raw(&format!("<clipPath id=\"{clip}\">\n"));
     svg.rect(left - 1.0, top - 1.0, right - left + 2.0, bottom - top + 2.0, "");
     svg.raw(&format!("</clipPath>\n<g clip-path=\"url(#{clip})\" stroke-linejoin=\"round\">\n"));
-    let mut canvas = Canvas { frame: frame.area.grown(-3.0), ink: Vec::new(), taken: Vec::new() };
+    let mut canvas = Canvas::new(frame.area.grown(-3.0));
     let classes = curves::classes(figure);
     for (index, mark) in figure.marks.iter().enumerate() {
         in_group(&mut svg, &classes[index], |svg| draw_mark(svg, &mut canvas, &frame, mark, index));

@@ -144,11 +144,14 @@ pub(super) fn simplify(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f6
     keep[path.len() - 1] = true;
     let mut spans = vec![(0, path.len() - 1)];
     while let Some((from, to)) = spans.pop() {
-        let away = |index: usize| off_chord(path[index], path[from], path[to]);
-        let farthest = (from + 1..to).max_by(|a, b| away(*a).total_cmp(&away(*b)));
-        if let Some(index) = farthest
-            && away(index) > NEAR
-        {
+        let (mut index, mut away) = (from, NEAR);
+        for between in from + 1..to {
+            let distance = off_chord(path[between], path[from], path[to]);
+            if distance >= away {
+                (index, away) = (between, distance);
+            }
+        }
+        if away > NEAR {
             keep[index] = true;
             spans.push((from, index));
             spans.push((index, to));
@@ -206,14 +209,38 @@ impl Rect {
 
 /// Drawn points, and the space that remains for labels.
 pub(super) struct Canvas {
-    pub(crate) frame: Rect,
-    /// Points on the drawn marks, a few pixels apart, each with the index of its mark.
-    pub(crate) ink: Vec<((f64, f64), usize)>,
+    frame: Rect,
+    /// Points on the drawn marks, a few pixels apart, each with the index of its mark, by columns of `COLUMN` pixels.
+    ink: Vec<Vec<((f64, f64), usize)>>,
     /// Labels and symbols already placed.
-    pub(crate) taken: Vec<Rect>,
+    pub(super) taken: Vec<Rect>,
 }
 
+/// A label looks for ink in the columns that it covers only.
+const COLUMN: f64 = 24.0;
+
 impl Canvas {
+    pub(super) fn new(frame: Rect) -> Self {
+        let columns = ((frame.right - frame.left) / COLUMN).ceil().clamp(1.0, 1000.0) as usize;
+        Self { frame, ink: vec![Vec::new(); columns], taken: Vec::new() }
+    }
+
+    /// Column of an abscissa; what lies outside the frame belongs to the outermost.
+    fn column(&self, x: f64) -> usize {
+        (((x - self.frame.left) / COLUMN).max(0.0) as usize).min(self.ink.len() - 1)
+    }
+
+    fn add(&mut self, point: (f64, f64), mark: usize) {
+        let column = self.column(point.0);
+        self.ink[column].push((point, mark));
+    }
+
+    /// Drawn points inside a rectangle.
+    fn inside(&self, area: Rect) -> impl Iterator<Item = &((f64, f64), usize)> {
+        let columns = &self.ink[self.column(area.left)..=self.column(area.right)];
+        columns.iter().flatten().filter(move |(point, _)| area.holds(*point))
+    }
+
     /// Adds points every 3 pixels along a path, so that no label can slip between two of them.
     pub(super) fn draw(&mut self, path: &[(f64, f64)], mark: usize) {
         for pair in path.windows(2) {
@@ -221,10 +248,10 @@ impl Canvas {
             let steps = (libm::hypot(dx, dy) / 3.0).ceil().clamp(1.0, 2000.0) as usize;
             for step in 0..steps {
                 let share = step as f64 / steps as f64;
-                self.ink.push(((pair[0].0 + share * dx, pair[0].1 + share * dy), mark));
+                self.add((pair[0].0 + share * dx, pair[0].1 + share * dy), mark);
             }
         }
-        self.ink.extend(path.last().map(|end| (*end, mark)));
+        path.last().into_iter().for_each(|end| self.add(*end, mark));
     }
 
     /// Takes and returns a free box of this size near one of the anchors (tried in order), or `None`. Other
@@ -250,14 +277,17 @@ impl Canvas {
                 (x - width / 2.0, y + GAP),
             ];
             for (rank, (left, top)) in corners.into_iter().enumerate() {
+                let distance = 1.5 * order as f64 + 0.5 * rank as f64;
+                if best.is_some_and(|(least, _)| least <= distance) {
+                    continue;
+                }
                 let candidate = Rect { left, top, right: left + width, bottom: top + height };
                 if !candidate.within(&self.frame) || self.covers(&candidate.grown(1.0)) {
                     continue;
                 }
-                let near = candidate.grown(12.0);
-                let crowd = self.ink.iter().filter(|(point, _)| near.holds(*point));
+                let crowd = self.inside(candidate.grown(12.0));
                 let crowd: f64 = crowd.map(|(_, other)| if *other == mark { 0.5 } else { 2.0 }).sum();
-                let cost = crowd + 1.5 * order as f64 + 0.5 * rank as f64;
+                let cost = crowd + distance;
                 if best.is_none_or(|(least, _)| cost < least) {
                     best = Some((cost, candidate));
                 }
@@ -269,8 +299,7 @@ impl Canvas {
     }
 
     fn covers(&self, candidate: &Rect) -> bool {
-        self.taken.iter().any(|taken| taken.meets(candidate))
-            || self.ink.iter().any(|(point, _)| candidate.holds(*point))
+        self.taken.iter().any(|taken| taken.meets(candidate)) || self.inside(*candidate).next().is_some()
     }
 }
 
@@ -321,8 +350,7 @@ mod tests {
     }
 
     fn canvas() -> Canvas {
-        let frame = Rect { left: 0.0, top: 0.0, right: 100.0, bottom: 100.0 };
-        Canvas { frame, ink: Vec::new(), taken: Vec::new() }
+        Canvas::new(Rect { left: 0.0, top: 0.0, right: 100.0, bottom: 100.0 })
     }
 
     #[test]
@@ -335,7 +363,8 @@ mod tests {
         assert!(!first.meets(&second));
         for label in [first, second] {
             assert!(label.within(&canvas.frame));
-            assert!(!canvas.ink.iter().any(|(point, _)| label.holds(*point)), "{label:?} covers the curve");
+            let covered = canvas.ink.iter().flatten().any(|(point, _)| label.holds(*point));
+            assert!(!covered, "{label:?} covers the curve");
         }
     }
 
