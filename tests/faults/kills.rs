@@ -74,13 +74,13 @@ const WORKS: [Work; 10] = [
         one_in: 1,
         ..RUN
     },
-    Work { name: "scene with files", files: FILES, command: run!("files.toml"), one_in: 3, ..RUN },
+    Work { name: "scene with files", files: FILES, command: run!("files.toml"), one_in: 6, ..RUN },
     Work {
         name: "packed filter",
         files: FILES,
         before: &[PACK_KEPT],
         command: run!("packed.toml"),
-        one_in: 3,
+        one_in: 6,
         ..RUN
     },
     Work {
@@ -88,7 +88,7 @@ const WORKS: [Work; 10] = [
         files: FILES,
         before: &[run!("packed.toml")],
         command: run!("files.toml", "--overwrite"),
-        one_in: 2,
+        one_in: 5,
         ..RUN
     },
     Work {
@@ -96,7 +96,7 @@ const WORKS: [Work; 10] = [
         files: FILES,
         before: &[run!("files.toml")],
         command: run!("scene.toml", "--overwrite"),
-        one_in: 3,
+        one_in: 6,
         ..RUN
     },
     Work {
@@ -111,7 +111,7 @@ const WORKS: [Work; 10] = [
         files: FILES,
         before: &[&["pack", "pack.toml", "--out", "r", "-q", "--threads", "1"]],
         command: &["pack", "pack.toml", "--out", "r", "-q", "--threads", "1", "--seed", "7", "--overwrite"],
-        one_in: 2,
+        one_in: 4,
         ..RUN
     },
     Work { name: "percolation", command: PERCOLATION, one_in: 1, ..RUN },

@@ -27,13 +27,14 @@ fn main() -> ExitCode {
         }
         return voidwalk::cli::main();
     }
+    // The longest first.
     let tests: [(&str, fn()); 7] = [
+        ("what_is_killed_at_any_change_of_a_name_becomes_what_unbroken_work_is", kills::at_every_name),
         ("a_run_outlives_the_failure_of_every_call", || each_failure(&RUN)),
         ("a_resume_outlives_the_failure_of_every_call", || each_failure(&RESUME)),
         ("a_mapped_run_outlives_the_failure_of_every_call", || each_failure(&MAPPED)),
         ("a_packing_outlives_the_failure_of_every_call", || each_failure(&PACKING)),
         ("a_campaign_outlives_the_failure_of_every_call", || each_failure(&CAMPAIGN)),
-        ("what_is_killed_at_any_change_of_a_name_becomes_what_unbroken_work_is", kills::at_every_name),
         ("a_power_cut_at_any_sync_loses_nothing_that_was_synced", power_cuts),
     ];
     let wanted: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();

@@ -210,13 +210,13 @@ impl Rect {
 /// Drawn points, and the space that remains for labels.
 pub(super) struct Canvas {
     frame: Rect,
-    /// Points on the drawn marks, a few pixels apart, each with the index of its mark, by columns of `COLUMN` pixels.
+    /// Points on the drawn marks, a few pixels apart, each with the index of its mark; by column.
     ink: Vec<Vec<((f64, f64), usize)>>,
     /// Labels and symbols already placed.
     pub(super) taken: Vec<Rect>,
 }
 
-/// A label looks for ink in the columns that it covers only.
+/// Width of a column of ink (pixels): a label looks for ink in the columns that it covers only.
 const COLUMN: f64 = 24.0;
 
 impl Canvas {
