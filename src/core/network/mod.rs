@@ -28,7 +28,6 @@ pub use arrays::ArrayOptions;
 pub use columns::NO_EXIT;
 pub use columns::{CONDUCTANCE_EXPONENT, NetworkColumns};
 pub use connectivity::Connectivity;
-
 #[cfg(test)]
 use connectivity::TABLE_3;
 pub use cubic::percolation_threshold;
